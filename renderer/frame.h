@@ -1,0 +1,41 @@
+// One frame's inputs and what came of it. Plain data, shared by the application, the modes and the passes.
+#ifndef RENDERER_FRAME_H
+#define RENDERER_FRAME_H
+
+#include "stimuli/geometry.h"
+#include "stimuli/viewing.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct frame_eye {
+    struct pose pose;              // world
+    struct viewing_fov fov;        // may be asymmetric
+    double gaze_x_deg, gaze_y_deg; // what the fovea follows, this eye's frame (viewing.h); not finite: see frame.h below
+};
+
+// A gaze that is not a number means no valid gaze: a foveated mode then treats every pixel as foveal.
+struct frame {
+    uint64_t number;    // counts up by one per frame of a run; seeds per-frame random choices
+    double animation_s; // scene time for moving objects
+    struct frame_eye eyes[EYES];
+    bool cut; // camera cut: nothing from earlier frames may be used
+};
+
+enum { FRAME_TIMERS = 32 };
+
+struct frame_stats {
+    uint64_t shaded_px;     // pixels of both eyes whose shading ran or whose background was written
+    uint64_t triangles;     // submitted to the rasteriser after culling, both eyes
+    uint64_t submodels;     // draws after culling, both eyes
+    double gpu_ms;          // first to last time stamp of the frame
+    double cpu_ms;          // recording and submitting
+    bool full_redraw;       // a mode with history did not use it
+    uint32_t timer_count;
+    struct {
+        const char *name; // constant string, the pass
+        double ms;
+    } timers[FRAME_TIMERS];
+};
+
+#endif
