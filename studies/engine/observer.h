@@ -1,0 +1,69 @@
+// A simulated participant: an event source for the machine, for rehearsals and tests.
+//
+// It looks, toggles with log-normal dwell times, chooses by a psychometric function of the options' image
+// errors, rates by a latent normal with criteria. Every draw is Philox keyed by (seed, participant number,
+// trial, purpose): the same session gives the same events. Use, before each machine_frame:
+//     while (observer_next(o, now_ns, &view, &errors, &at_ns, &event)) { machine_event(m, at_ns, &event);
+//                                                                        machine_look(m, &view); }
+// Does not: read a clock, measure errors, answer MACHINE_STORING (the caller's store does).
+//
+// The choice: with d = error of b minus error of a, P(a) = lapse / 2 + (1 - lapse) L(side_bias + ln 3 sign(d)
+// |d / threshold|^slope), L the logistic function. threshold is the difference at which an unbiased observer
+// without lapses takes the better one in 75 % of trials; equal errors give one half by law.
+#ifndef STUDIES_ENGINE_OBSERVER_H
+#define STUDIES_ENGINE_OBSERVER_H
+
+#include "studies/engine/machine.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum { OBSERVER_PATH = 256 };
+
+struct observer_parameters {
+    double threshold;    // error difference seen in 75 %, in the unit of the errors handed in
+    double slope;        // exponent of the difference
+    double lapse;        // share of answers that are guesses, 0..1
+    double side_bias;    // logits towards slot a
+    double toggles_mean; // toggles before a choice
+    double dwell_s;      // median time on one option outside fades
+    double dwell_spread; // sd of ln(dwell)
+    double rating_mean;  // latent rating of a flawless image
+    double rating_sd;
+    double rating_drop;         // points lost per threshold of error
+    double view_s;              // median time before asking for the rating question
+    double answer_s;            // median time to answer a screen
+    char errors[OBSERVER_PATH]; // the file of errors the caller reads; "" where not given
+};
+
+void observer_defaults(struct observer_parameters *out);
+// "sim" or "sim:lapse=0.1,errors=FILE"; false with a sentence. A file name may not contain a comma.
+bool observer_parse(const char *spec, struct observer_parameters *out, char *error, size_t error_size);
+
+// Image error of each slot's option against the reference; larger is more visible. A rating reads [0].
+struct observer_errors {
+    double slot[2];
+};
+
+struct observer {
+    struct observer_parameters parameters;
+    uint64_t key;
+    // what it is waiting to do
+    bool armed;
+    enum machine_screen screen;
+    uint32_t trial, attempt, step, toggles_planned;
+    int64_t due_ns;
+    struct machine_event next;
+};
+
+void observer_start(struct observer *observer, const struct observer_parameters *parameters, uint64_t seed,
+                    uint32_t number);
+// The next event due at or before now_ns, at *out_at_ns; false: none.
+bool observer_next(struct observer *observer, int64_t now_ns, const struct machine_view *view,
+                   const struct observer_errors *errors, int64_t *out_at_ns, struct machine_event *out_event);
+// The law above, for tests and for reports.
+double observer_probability_a(const struct observer_parameters *parameters,
+                              const struct observer_errors *errors);
+
+#endif

@@ -1,0 +1,75 @@
+// The trials of one participant, a pure function of (protocol hash, seed, participant number).
+//
+// Integer arithmetic on Philox4x32-10 (random.h): the same on every machine and compiler. How each thing is
+// drawn stands in plan.c. Use: plan_create -> read -> plan_destroy. Does not: change while the session runs, do
+// I/O.
+#ifndef STUDIES_ENGINE_PLAN_H
+#define STUDIES_ENGINE_PLAN_H
+
+#include "studies/protocol/protocol.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum { PLAN_JSON = 1024 };
+
+// A place in front of the participant. The numbers are fixed: 0 and 1 index arrays.
+enum plan_slot { PLAN_SLOT_A = 0, PLAN_SLOT_B = 1, PLAN_SLOT_NONE = 2 };
+const char *plan_slot_name(enum plan_slot slot); // "a", "b", NULL for none: as the store has them
+
+// A distinct option: mode and every parameter resolved.
+struct plan_condition {
+    const char *mode;
+    uint32_t mode_index; // into the protocol's catalogue
+    double values[CATALOGUE_PARAMETERS];
+    char parameters[PLAN_JSON]; // JSON
+};
+
+struct plan_trial {
+    uint32_t ordinal; // 1.. over the session
+    uint32_t block;   // index into protocol.blocks; the name is the store's `block`
+    enum protocol_kind kind;
+    const char *scene;
+    char settings[PLAN_JSON]; // JSON
+    char factors[PLAN_JSON];  // JSON; of a rating {"option":"foveated"}, with "repeats" for the complement
+    int32_t option[2];        // conditions in slots a and b; a rating has its one option in a and -1 in b
+    enum plan_slot test_slot; // the slot of the block's first option; NONE where it is not shown
+    enum plan_slot first_shown;
+    const char *fixation;
+    uint64_t seed; // 63 bits, for what the trial itself draws (paths, targets)
+    const struct protocol_settings *resolved;
+    const struct protocol_question *question;
+    uint32_t cell;       // cell of the factorial or the list, from 0
+    uint32_t repetition; // from 0
+};
+
+struct plan {
+    const struct protocol *protocol;
+    uint64_t seed;
+    uint32_t number;
+    struct plan_condition *conditions;
+    uint32_t condition_count;
+    struct plan_trial *trials;
+    uint32_t trial_count;
+    // Largest difference over one in any balance that DESIGN promises for full factorials; 0 when all hold.
+    uint32_t imbalance;
+};
+
+// number counts from 0, so that 4j..4j+3 are whole groups. The protocol must outlive the plan. NULL: out of
+// memory.
+struct plan *plan_create(const struct protocol *protocol, uint64_t seed, uint32_t number);
+void plan_destroy(struct plan *plan); // NULL is fine
+
+// SHA-256 over every column of every trial and condition, as text: what golden tables and resume compare.
+void plan_hash(const struct plan *plan, char out[SHA256_HEX]);
+
+// For `fovstudy check`. Each returns a heap string to free, NULL: out of memory.
+char *plan_table_text(const struct plan *plan);
+char *plan_table_json(const struct plan *plan);
+// Over participants first..first+count-1: per block and cell how often each scene, side and first-shown option
+// came.
+char *plan_counts_text(const struct protocol *protocol, uint64_t seed, uint32_t first, uint32_t count);
+char *plan_counts_json(const struct protocol *protocol, uint64_t seed, uint32_t first, uint32_t count);
+
+#endif
