@@ -1,0 +1,18 @@
+// Mean and standard deviation.
+//
+// NaN where undefined: no values for the mean, fewer than two for the others, or any value not finite.
+#ifndef ANALYSIS_STATS_MOMENTS_H
+#define ANALYSIS_STATS_MOMENTS_H
+
+#include <stddef.h>
+
+struct stat_moments {
+    size_t n;
+    double mean;
+    double sd;        // of the sample, n - 1
+    double std_error; // sd / sqrt(n)
+};
+
+struct stat_moments stat_moments(const double *values, size_t n);
+
+#endif

@@ -1,0 +1,267 @@
+// The queries of read.h: one statement and one function that fills a row, each.
+#include "studies/store/read.h"
+
+#include "studies/store/read_private.h"
+
+#include <math.h>
+#include <string.h>
+
+// Whom a call hands its rows to: the member that fits is set.
+struct call {
+    void *user;
+    store_session_fn session;
+    store_member_fn member;
+    store_trial_fn trial;
+    store_rating_fn rating;
+    store_frame_fn frame;
+    store_exclusion_fn exclusion;
+    store_gaze_fn gaze;
+};
+
+typedef bool (*row_fn)(sqlite3_stmt *statement, const struct call *call);
+
+static bool read_rows(struct store_reader *reader, const char *sql, row_fn row, const struct call *call)
+{
+    reader->error[0] = '\0';
+    sqlite3_stmt *statement = NULL;
+    int code = sqlite3_prepare_v2(reader->db, sql, -1, &statement, NULL);
+    if (code != SQLITE_OK) {
+        store_reader_fail_sqlite(reader, code);
+        return false;
+    }
+    bool going = true;
+    while (going && (code = sqlite3_step(statement)) == SQLITE_ROW)
+        going = row(statement, call);
+    if (going && code != SQLITE_DONE) {
+        store_reader_fail_sqlite(reader, code);
+        going = false;
+    }
+    sqlite3_finalize(statement);
+    return going;
+}
+
+static const char *text(sqlite3_stmt *statement, int column)
+{
+    const unsigned char *value = sqlite3_column_text(statement, column);
+    return value ? (const char *)value : "";
+}
+
+static double real(sqlite3_stmt *statement, int column)
+{
+    return sqlite3_column_type(statement, column) == SQLITE_NULL ? (double)NAN
+                                                                 : sqlite3_column_double(statement, column);
+}
+
+static bool session_row(sqlite3_stmt *s, const struct call *call)
+{
+    struct store_session_row row = {
+        .id = sqlite3_column_int64(s, 0),
+        .participant_id = sqlite3_column_int64(s, 1),
+        .number = sqlite3_column_int64(s, 2),
+        .code = text(s, 3),
+        .simulated = sqlite3_column_int(s, 4),
+        .status = text(s, 5),
+        .started_at = text(s, 6),
+        .ended_at = text(s, 7),
+        .seed = (uint64_t)sqlite3_column_int64(s, 8),
+        .protocol_name = text(s, 9),
+        .protocol_sha256 = text(s, 10),
+        .device = text(s, 11),
+        .driver = text(s, 12),
+        .display = text(s, 13),
+        .refresh_hz = real(s, 14),
+        .width_px = real(s, 15),
+        .height_px = real(s, 16),
+        .fov_deg = real(s, 17),
+        .app_version = text(s, 18),
+        .simulated_clock = sqlite3_column_int(s, 19),
+        .segments = sqlite3_column_int64(s, 20),
+    };
+    return call->session(call->user, &row);
+}
+
+bool store_read_sessions(struct store_reader *reader, store_session_fn each, void *user)
+{
+    static const char sql[] =
+        "SELECT s.id, s.participant_id, p.number, p.code, p.kind = 'simulated', s.status, s.started_at, "
+        "s.ended_at,"
+        " s.seed, o.name, o.sha256, s.device, s.driver, s.display, s.refresh_hz, s.width_px, s.height_px, "
+        "s.fov_deg,"
+        " (SELECT app_version FROM segment WHERE session_id = s.id ORDER BY id LIMIT 1),"
+        " (SELECT max(clock = 'simulated') FROM segment WHERE session_id = s.id),"
+        " (SELECT count(*) FROM segment WHERE session_id = s.id)"
+        " FROM session s JOIN participant p ON p.id = s.participant_id JOIN protocol o ON o.id = s.protocol_id"
+        " ORDER BY s.id";
+    return read_rows(reader, sql, session_row, &(struct call){.user = user, .session = each});
+}
+
+static bool member_row(sqlite3_stmt *s, const struct call *call)
+{
+    bool number = sqlite3_column_type(s, 4) == SQLITE_INTEGER || sqlite3_column_type(s, 4) == SQLITE_FLOAT;
+    struct store_member_row row = {
+        .owner = sqlite3_column_int64(s, 0),
+        .owner_text = text(s, 1),
+        .key = text(s, 2),
+        .number = number ? sqlite3_column_double(s, 4) : (double)NAN,
+        .value = text(s, 3),
+    };
+    return call->member(call->user, &row);
+}
+
+bool store_read_factors(struct store_reader *reader, store_member_fn each, void *user)
+{
+    // value ->> '$' spells a number as the file does; j.atom would make 0.10 of it what SQLite likes.
+    static const char sql[] =
+        "SELECT 0, f.factors, j.key, CAST(j.value AS TEXT), j.atom FROM (SELECT DISTINCT factors FROM trial) f,"
+        " json_each(f.factors) j ORDER BY f.factors, j.id";
+    return read_rows(reader, sql, member_row, &(struct call){.user = user, .member = each});
+}
+
+bool store_read_conditions(struct store_reader *reader, store_member_fn each, void *user)
+{
+    static const char sql[] = "SELECT c.id, c.mode, j.key, CAST(j.value AS TEXT), j.atom FROM condition c LEFT "
+                              "JOIN json_each(c.parameters) j"
+                              " ORDER BY c.id, j.id";
+    return read_rows(reader, sql, member_row, &(struct call){.user = user, .member = each});
+}
+
+bool store_read_attributes(struct store_reader *reader, store_member_fn each, void *user)
+{
+    static const char sql[] = "SELECT p.id, p.code, j.key, CAST(j.value AS TEXT), j.atom FROM participant p, "
+                              "json_each(p.attributes) j"
+                              " ORDER BY p.id, j.id";
+    return read_rows(reader, sql, member_row, &(struct call){.user = user, .member = each});
+}
+
+// Slots become test and reference here, so that no analysis can forget to.
+static bool trial_row(sqlite3_stmt *s, const struct call *call)
+{
+    const char *slot = text(s, 10), *chosen = text(s, 12);
+    int test = slot[0] == 'b' ? 9 : 8, reference = slot[0] == 'b' ? 8 : 9;
+    struct store_trial_row row = {
+        .id = sqlite3_column_int64(s, 0),
+        .session_id = sqlite3_column_int64(s, 1),
+        .ordinal = sqlite3_column_int64(s, 2),
+        .repeat_of = sqlite3_column_int64(s, 3),
+        .block = text(s, 4),
+        .kind = text(s, 5),
+        .scene = text(s, 6),
+        .factors = text(s, 7),
+        .status = text(s, 16),
+        .test_id = sqlite3_column_int64(s, test),
+        .reference_id = sqlite3_column_int64(s, reference),
+        .choice_id = sqlite3_column_int64(s, 11),
+        .reaction_s = real(s, 13),
+        .toggles = sqlite3_column_int64(s, 14),
+        .chosen_first = sqlite3_column_int(s, 15),
+        .chosen_a = strcmp(chosen, "a") == 0,
+    };
+    if (strcmp(chosen, "equal") == 0)
+        row.chosen = '=';
+    else if (chosen[0])
+        row.chosen = (char)(slot[0] == '\0' ? '?' : slot[0] == chosen[0] ? 't' : 'r');
+    return call->trial(call->user, &row);
+}
+
+bool store_read_trials(struct store_reader *reader, store_trial_fn each, void *user)
+{
+    static const char sql[] =
+        "SELECT t.id, t.session_id, t.ordinal, t.repeat_of, t.block, t.kind, t.scene, t.factors, t.option_a,"
+        " t.option_b, t.test_slot, c.id, c.chosen, c.reaction_ns / 1e9, c.toggles, c.chosen = t.first_shown, "
+        "t.status"
+        " FROM trial t LEFT JOIN choice c ON c.trial_id = t.id ORDER BY t.session_id, t.ordinal";
+    return read_rows(reader, sql, trial_row, &(struct call){.user = user, .trial = each});
+}
+
+static bool rating_row(sqlite3_stmt *s, const struct call *call)
+{
+    struct store_rating_row row = {
+        .id = sqlite3_column_int64(s, 0),
+        .session_id = sqlite3_column_int64(s, 1),
+        .trial_id = sqlite3_column_int64(s, 2),
+        .ordinal = sqlite3_column_int64(s, 3),
+        .trial_status = text(s, 4),
+        .question = text(s, 5),
+        .block = text(s, 6),
+        .scene = text(s, 7),
+        .condition_id = sqlite3_column_int64(s, 8),
+        .value = real(s, 9),
+        .scale_min = real(s, 10),
+        .scale_max = real(s, 11),
+    };
+    return call->rating(call->user, &row);
+}
+
+bool store_read_ratings(struct store_reader *reader, store_rating_fn each, void *user)
+{
+    static const char sql[] =
+        "SELECT r.id, coalesce(r.session_id, t.session_id) AS session, r.trial_id, t.ordinal, t.status, "
+        "r.question,"
+        " t.block, t.scene, r.condition_id, r.value, r.scale_min, r.scale_max"
+        " FROM rating r LEFT JOIN trial t ON t.id = r.trial_id ORDER BY session, r.question, t.ordinal, r.id";
+    return read_rows(reader, sql, rating_row, &(struct call){.user = user, .rating = each});
+}
+
+static bool frame_row(sqlite3_stmt *s, const struct call *call)
+{
+    struct store_frame_row row = {
+        .session_id = sqlite3_column_int64(s, 0),
+        .segment_id = sqlite3_column_int64(s, 1),
+        .trial_id = sqlite3_column_int64(s, 2),
+        .number = sqlite3_column_int64(s, 3),
+        .condition_id = sqlite3_column_int64(s, 4),
+        .phase = text(s, 5),
+        .start_ns = sqlite3_column_int64(s, 6),
+        .cpu_us = real(s, 7),
+        .gpu_us = real(s, 8),
+        .late = sqlite3_column_int(s, 9),
+        .gaze_age_us = real(s, 10),
+        .shaded_px = real(s, 11),
+        .simulated_clock = sqlite3_column_int(s, 12),
+    };
+    return call->frame(call->user, &row);
+}
+
+bool store_read_frames(struct store_reader *reader, store_frame_fn each, void *user)
+{
+    static const char sql[] = "SELECT f.session_id, f.segment_id, f.trial_id, f.number, f.condition_id, "
+                              "f.phase, f.start_ns, f.cpu_us,"
+                              " f.gpu_us, f.late, f.gaze_age_us, f.shaded_px, g.clock = 'simulated'"
+                              " FROM frame f JOIN segment g ON g.id = f.segment_id ORDER BY f.id";
+    return read_rows(reader, sql, frame_row, &(struct call){.user = user, .frame = each});
+}
+
+static bool exclusion_row(sqlite3_stmt *s, const struct call *call)
+{
+    struct store_exclusion_row row = {
+        .trial_id = sqlite3_column_int64(s, 0),
+        .session_id = sqlite3_column_int64(s, 1),
+        .participant_id = sqlite3_column_int64(s, 2),
+        .rule = text(s, 3),
+        .rule_set = text(s, 4),
+        .reason = text(s, 5),
+        .by = text(s, 6),
+    };
+    return call->exclusion(call->user, &row);
+}
+
+bool store_read_exclusions(struct store_reader *reader, store_exclusion_fn each, void *user)
+{
+    static const char sql[] = "SELECT trial_id, session_id, participant_id, rule, rule_set, reason, \"by\""
+                              " FROM exclusion ORDER BY id";
+    return read_rows(reader, sql, exclusion_row, &(struct call){.user = user, .exclusion = each});
+}
+
+static bool gaze_row(sqlite3_stmt *s, const struct call *call)
+{
+    struct store_gaze_row row = {sqlite3_column_int64(s, 0), sqlite3_column_int64(s, 1),
+                                 sqlite3_column_int64(s, 2)};
+    return call->gaze(call->user, &row);
+}
+
+bool store_read_gaze_counts(struct store_reader *reader, store_gaze_fn each, void *user)
+{
+    static const char sql[] =
+        "SELECT session_id, count(*), sum(NOT valid) FROM gaze GROUP BY session_id ORDER BY session_id";
+    return read_rows(reader, sql, gaze_row, &(struct call){.user = user, .gaze = each});
+}
