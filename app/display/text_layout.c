@@ -1,0 +1,242 @@
+#include "app/display/text_layout.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+// The panel keeps to the middle of the view, where headset lenses are sharp; in a small image it may take more
+// of the picture, since there the text would not fit otherwise.
+#define PANEL_HALF_X_DEG 26.0
+#define PANEL_HALF_Y_DEG 24.0
+#define PANEL_LEAST_PX 300.0
+#define PANEL_MOST 0.94 // of the image, less what vergence shifts the panel sideways
+#define CAP_LEAST_PX 6.0
+#define CAP_SHRINK 0.85
+static const double style_size[TEXT_STYLES] = {[TEXT_TITLE] = 1.35, [TEXT_BODY] = 1.0, [TEXT_HINT] = 0.85};
+
+// The flow of lines down the pages.
+struct flow {
+    struct text_layout *layout;
+    double room_x, room_y; // the most a panel may take
+    double margin;
+    double y, bottom; // next line's top; where lines end on this page
+    uint32_t page;
+};
+
+static void end_page(struct flow *flow)
+{
+    flow->layout->height[flow->page] = flow->y + flow->margin;
+    if (flow->page + 1 < TEXT_PAGES)
+        flow->page++;
+    flow->y = flow->margin;
+}
+
+static void add_run(struct flow *flow, struct text_run run)
+{
+    struct text_layout *layout = flow->layout;
+    if (layout->run_count == TEXT_RUNS)
+        return;
+    run.page = flow->page;
+    run.top = flow->y;
+    run.width = font_width_px(layout->fonts[run.style], run.text, run.bytes);
+    layout->runs[layout->run_count++] = run;
+}
+
+static void add_line(struct flow *flow, const char *text, size_t bytes, enum text_style style)
+{
+    double line = font_line_px(flow->layout->fonts[style]);
+    if (flow->y + line > flow->bottom && flow->y > flow->margin)
+        end_page(flow);
+    if (bytes > 0) {
+        double width = font_width_px(flow->layout->fonts[style], text, bytes);
+        add_run(flow, (struct text_run){
+                          .text = text, .bytes = bytes, .style = style, .x = (flow->room_x - width) / 2});
+    }
+    flow->y += line;
+}
+
+// How many bytes of the line starting at `text` fit: up to a space where there is one, else to the last
+// character.
+static size_t fitting(const struct font *font, const char *text, size_t bytes, double room)
+{
+    const char *end = text + bytes, *cursor = text;
+    size_t best = 0, any = 0;
+    while (cursor < end) {
+        const char *before = cursor;
+        uint32_t code = font_next_character(&cursor, end);
+        if (code == ' ')
+            best = (size_t)(before - text);
+        if (font_width_px(font, text, (size_t)(cursor - text)) > room)
+            return best > 0 ? best : any > 0 ? any : (size_t)(cursor - text);
+        any = (size_t)(cursor - text);
+    }
+    return bytes;
+}
+
+static void add_text(struct flow *flow, const char *text, enum text_style style)
+{
+    const struct font *font = flow->layout->fonts[style];
+    double room = flow->room_x - 2.0 * flow->margin;
+    while (text && *text) {
+        size_t length = strcspn(text, "\n");
+        const char *line = text;
+        if (length == 0)
+            add_line(flow, line, 0, style);
+        while (length > 0) {
+            size_t take = fitting(font, line, length, room);
+            add_line(flow, line, take, style);
+            while (take < length && line[take] == ' ')
+                take++;
+            line += take;
+            length -= take;
+        }
+        text = *line == '\n' ? line + 1 : line;
+    }
+}
+
+static void add_gap(struct flow *flow)
+{
+    if (flow->y > flow->margin)
+        flow->y += 0.5 * font_line_px(flow->layout->fonts[TEXT_BODY]);
+}
+
+// One line of numbers spread over the panel, the meanings of the ends below it.
+static void add_scale(struct flow *flow, const struct text_screen *screen)
+{
+    struct text_layout *layout = flow->layout;
+    int count = screen->scale_max - screen->scale_min + 1;
+    if (count < 2 || count > (int)(sizeof layout->numbers / sizeof layout->numbers[0]))
+        return;
+    double line = font_line_px(layout->fonts[TEXT_BODY]);
+    bool ends = screen->scale_low || screen->scale_high;
+    if (flow->y + (ends ? 2.2 : 1.0) * line > flow->bottom && flow->y > flow->margin)
+        end_page(flow);
+    double room = flow->room_x - 2.0 * flow->margin, cell = room / count;
+    for (int i = 0; i < count; i++) {
+        char *number = layout->numbers[i];
+        snprintf(number, sizeof layout->numbers[i], "%d", screen->scale_min + i);
+        double width = font_width_px(layout->fonts[TEXT_BODY], number, strlen(number));
+        add_run(flow, (struct text_run){.text = number,
+                                        .bytes = strlen(number),
+                                        .style = TEXT_BODY,
+                                        .marked = screen->scale_min + i == screen->scale_selected,
+                                        .x = flow->margin + cell * (i + 0.5) - width / 2});
+    }
+    flow->y += 1.2 * line;
+    if (ends) {
+        const char *low = screen->scale_low ? screen->scale_low : "",
+                   *high = screen->scale_high ? screen->scale_high : "";
+        double width = font_width_px(layout->fonts[TEXT_HINT], high, strlen(high));
+        add_run(flow,
+                (struct text_run){.text = low, .bytes = strlen(low), .style = TEXT_HINT, .x = flow->margin});
+        add_run(flow, (struct text_run){.text = high,
+                                        .bytes = strlen(high),
+                                        .style = TEXT_HINT,
+                                        .x = flow->room_x - flow->margin - width});
+        flow->y += line;
+    }
+}
+
+static void destroy_fonts(struct text_layout *layout)
+{
+    for (int i = 0; i < TEXT_STYLES; i++) {
+        font_destroy(layout->fonts[i]);
+        layout->fonts[i] = NULL;
+    }
+}
+
+static bool create_fonts(struct text_layout *layout, double cap_px)
+{
+    destroy_fonts(layout);
+    layout->cap_px = cap_px;
+    layout->run_count = 0;
+    for (int i = 0; i < TEXT_STYLES; i++)
+        if (!(layout->fonts[i] = font_create(cap_px * style_size[i])))
+            return false;
+    return true;
+}
+
+static void lay_out(struct flow *flow, const struct text_screen *screen)
+{
+    struct text_layout *layout = flow->layout;
+    flow->margin = 0.6 * font_line_px(layout->fonts[TEXT_BODY]);
+    flow->bottom = flow->room_y - flow->margin;
+    flow->y = flow->margin;
+    flow->page = 0;
+    add_text(flow, screen->title, TEXT_TITLE);
+    if (screen->title && *screen->title && screen->body && *screen->body)
+        add_gap(flow);
+    add_text(flow, screen->body, TEXT_BODY);
+    if (screen->scale_max > screen->scale_min) {
+        add_gap(flow);
+        add_scale(flow, screen);
+    }
+    if (screen->hint && *screen->hint)
+        add_gap(flow);
+    add_text(flow, screen->hint, TEXT_HINT);
+    layout->height[flow->page] = flow->y + flow->margin;
+    layout->page_count = flow->page + 1;
+    layout->width = flow->room_x;
+}
+
+// Runs are centred in the room; the panel is only as wide as the widest needs.
+static void trim(struct text_layout *layout, double margin, bool keep_width)
+{
+    double left = layout->width, right = 0.0;
+    for (size_t i = 0; i < layout->run_count; i++) {
+        left = fmin(left, layout->runs[i].x);
+        right = fmax(right, layout->runs[i].x + layout->runs[i].width);
+    }
+    if (keep_width || right <= left)
+        return;
+    double cut = fmax(0.0, fmin(left, layout->width - right) - margin);
+    for (size_t i = 0; i < layout->run_count; i++)
+        layout->runs[i].x -= cut;
+    layout->width -= 2.0 * cut;
+}
+
+bool text_layout_init(struct text_layout *layout, const struct text_view *view,
+                      const struct text_screen *screen)
+{
+    *layout = (struct text_layout){.page_count = 1};
+    const double radians = 3.14159265358979323846 / 180.0;
+    const struct viewing_fov *fov = &view->fov[EYE_LEFT];
+    double per_tan_x = view->width / (fov->tan_left + fov->tan_right);
+    double per_tan_y = view->height / (fov->tan_down + fov->tan_up);
+    double shift = per_tan_x * view->ipd_m / TEXT_DISTANCE_M; // both eyes' half, twice: the panel stays inside
+    struct flow flow = {
+        .layout = layout,
+        .room_x = fmin(fmax(2.0 * per_tan_x * tan(PANEL_HALF_X_DEG * radians), PANEL_LEAST_PX),
+                       view->width * PANEL_MOST - shift),
+        .room_y = fmin(fmax(2.0 * per_tan_y * tan(PANEL_HALF_Y_DEG * radians), PANEL_LEAST_PX),
+                       view->height * PANEL_MOST),
+    };
+    double size = screen->size > 0.0 ? screen->size : 1.0;
+    double cap = size * fmax(per_tan_y * tan(TEXT_CAP_DEG * radians), TEXT_CAP_MIN_PX);
+    double least = fmin(cap, fmax(CAP_LEAST_PX, per_tan_y * tan(0.8 * TEXT_CAP_DEG * radians)));
+    layout->runs = calloc(TEXT_RUNS, sizeof *layout->runs);
+    bool done = layout->runs && create_fonts(layout, cap);
+    if (done)
+        lay_out(&flow, screen);
+    // Smaller letters before a second page, down to 1.2 degrees or what can be read.
+    while (done && layout->page_count > 1 && cap > least) {
+        cap = fmax(cap * CAP_SHRINK, least);
+        done = create_fonts(layout, cap);
+        if (done)
+            lay_out(&flow, screen);
+    }
+    if (!done) {
+        text_layout_finish(layout);
+        return false;
+    }
+    trim(layout, flow.margin, screen->scale_max > screen->scale_min);
+    return true;
+}
+
+void text_layout_finish(struct text_layout *layout)
+{
+    destroy_fonts(layout);
+    free(layout->runs);
+    layout->runs = NULL;
+}
