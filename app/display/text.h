@@ -30,6 +30,7 @@ struct text_screen {
     const char *title; // larger, first
     const char *body;
     const char *hint; // dimmer, last: which key does what
+    const char *more; // at the foot of every page that another one follows
     // A row of numbers from scale_min to scale_max with one marked, between body and hint; equal: no row.
     int scale_min, scale_max, scale_selected;
     const char *scale_low, *scale_high; // what its ends mean; NULL for nothing

@@ -19,18 +19,11 @@ static const double style_size[TEXT_STYLES] = {[TEXT_TITLE] = 1.35, [TEXT_BODY] 
 struct flow {
     struct text_layout *layout;
     double room_x, room_y; // the most a panel may take
+    const char *more;
     double margin;
     double y, bottom; // next line's top; where lines end on this page
     uint32_t page;
 };
-
-static void end_page(struct flow *flow)
-{
-    flow->layout->height[flow->page] = flow->y + flow->margin;
-    if (flow->page + 1 < TEXT_PAGES)
-        flow->page++;
-    flow->y = flow->margin;
-}
 
 static void add_run(struct flow *flow, struct text_run run)
 {
@@ -43,16 +36,33 @@ static void add_run(struct flow *flow, struct text_run run)
     layout->runs[layout->run_count++] = run;
 }
 
+static void add_centred(struct flow *flow, const char *text, size_t bytes, enum text_style style)
+{
+    double width = font_width_px(flow->layout->fonts[style], text, bytes);
+    add_run(flow,
+            (struct text_run){.text = text, .bytes = bytes, .style = style, .x = (flow->room_x - width) / 2});
+}
+
+static void end_page(struct flow *flow)
+{
+    if (flow->more) {
+        flow->y += 0.5 * font_line_px(flow->layout->fonts[TEXT_HINT]);
+        add_centred(flow, flow->more, strlen(flow->more), TEXT_HINT);
+        flow->y += font_line_px(flow->layout->fonts[TEXT_HINT]);
+    }
+    flow->layout->height[flow->page] = flow->y + flow->margin;
+    if (flow->page + 1 < TEXT_PAGES)
+        flow->page++;
+    flow->y = flow->margin;
+}
+
 static void add_line(struct flow *flow, const char *text, size_t bytes, enum text_style style)
 {
     double line = font_line_px(flow->layout->fonts[style]);
     if (flow->y + line > flow->bottom && flow->y > flow->margin)
         end_page(flow);
-    if (bytes > 0) {
-        double width = font_width_px(flow->layout->fonts[style], text, bytes);
-        add_run(flow, (struct text_run){
-                          .text = text, .bytes = bytes, .style = style, .x = (flow->room_x - width) / 2});
-    }
+    if (bytes > 0)
+        add_centred(flow, text, bytes, style);
     flow->y += line;
 }
 
@@ -161,7 +171,10 @@ static void lay_out(struct flow *flow, const struct text_screen *screen)
 {
     struct text_layout *layout = flow->layout;
     flow->margin = 0.6 * font_line_px(layout->fonts[TEXT_BODY]);
+    flow->more = screen->more;
     flow->bottom = flow->room_y - flow->margin;
+    if (screen->more)
+        flow->bottom -= 1.5 * font_line_px(layout->fonts[TEXT_HINT]);
     flow->y = flow->margin;
     flow->page = 0;
     add_text(flow, screen->title, TEXT_TITLE);

@@ -1,0 +1,54 @@
+// One running session: protocol, store, renderer, display, gaze and answers joined frame by frame.
+//
+// Use: prepare everything in a struct session_desc (fovstudy run does) -> session_run until it returns.
+// Without a display nothing is drawn: time goes by steps of step_hz and a simulated observer answers from
+// `errors`. Does not: own what the desc points to, parse options, create the session's rows (the caller did).
+#ifndef APP_SESSION_SESSION_H
+#define APP_SESSION_SESSION_H
+
+#include "app/display/display.h"
+#include "app/gaze/gaze_source.h"
+#include "app/session/errors.h"
+#include "app/session/event_lines.h"
+#include "app/session/stage.h"
+#include "studies/engine/observer.h"
+#include "studies/store/store.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+struct session_desc {
+    const struct plan *plan;
+    struct store *store;
+    const struct store_session_ids *ids; // with condition_ids and trial_ids
+    int64_t reference_id;                // the condition that errors are measured against
+    int64_t origin_ns;                   // the display's clock at the segment's time 0
+    struct event_lines *lines;
+
+    struct display *display; // NULL: nothing is drawn, and renderer and stage are NULL too
+    struct renderer *renderer;
+    struct stage *stage;
+    const struct stage_scene *scenes; // the stage's
+    size_t scene_count;
+    struct viewing_fov fov; // of each eye
+    double ipd_m;
+
+    struct gaze_source *gaze;                   // NULL: the fovea stays straight ahead
+    const struct observer_parameters *observer; // NULL: a person answers by keyboard
+    const struct errors *errors;                // the observer's, where nothing is drawn
+    double step_hz;                             // where nothing is drawn
+
+    // Called once per screen or trial, e.g. to print progress; NULL: not.
+    void (*progress)(void *user, const struct machine_view *view);
+    void *progress_user;
+};
+
+enum session_result {
+    SESSION_COMPLETE,
+    SESSION_ENDED, // by the participant, or without consent
+    SESSION_FAILED // one sentence in `error`; every answer that was acknowledged is stored
+};
+
+enum session_result session_run(const struct session_desc *desc, char *error, size_t error_size);
+
+#endif

@@ -1,0 +1,204 @@
+#include "app/session/show.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+bool show_init(struct show *show, const struct session_desc *desc)
+{
+    struct text_view view;
+    *show = (struct show){.desc = desc, .last_present_ns = -1};
+    text_view_init(&view, &desc->fov, desc->display->width, desc->display->height, desc->ipd_m);
+    overlay_init(&show->overlay, desc->renderer, &view);
+    if (!desc->observer)
+        return true;
+    show->measure = measure_create(desc->plan->condition_count, (uint32_t)desc->scene_count,
+                                   desc->display->width, desc->display->height);
+    return show->measure != NULL;
+}
+
+void show_finish(struct show *show)
+{
+    measure_destroy(show->measure);
+    show->measure = NULL;
+}
+
+static uint32_t scene_index(const struct show *show, uint32_t trial)
+{
+    const char *name = show->desc->plan->trials[trial].scene;
+    uint32_t i = 0;
+    while (i < show->desc->scene_count && strcmp(show->desc->scenes[i].name, name) != 0)
+        i++;
+    return i;
+}
+
+static double option_error(const struct show *show, uint32_t trial, int slot)
+{
+    const struct plan *plan = show->desc->plan;
+    int32_t condition = plan->trials[trial].option[slot];
+    if (condition < 0 || show->desc->ids->condition_ids[condition] == show->desc->reference_id)
+        return 0.0;
+    return measure_error(show->measure, (uint32_t)condition, scene_index(show, trial));
+}
+
+struct observer_errors show_errors(const struct show *show, uint32_t trial)
+{
+    struct observer_errors errors = {{0.0, 0.0}};
+    if (show->measure && trial < show->desc->plan->trial_count) {
+        for (int slot = 0; slot < 2; slot++) {
+            double error = option_error(show, trial, slot);
+            errors.slot[slot] = isnan(error) ? 0.0 : error;
+        }
+    }
+    return errors;
+}
+
+bool show_store_errors(const struct show *show, uint32_t trial, char *error, size_t error_size)
+{
+    const struct session_desc *desc = show->desc;
+    const struct plan_trial *planned = &desc->plan->trials[trial];
+    for (int slot = 0; show->measure && slot < 2; slot++) {
+        struct store_error why;
+        double value = option_error(show, trial, slot);
+        if (planned->option[slot] < 0 || isnan(value))
+            continue;
+        struct store_error_key key = {.condition_id = desc->ids->condition_ids[planned->option[slot]],
+                                      .reference_id = desc->reference_id,
+                                      .scene = planned->scene,
+                                      .metric = MEASURE_METRIC};
+        if (store_set_measured_error(desc->store, &key, value, &why) != STORE_OK) {
+            snprintf(error, error_size, "%s", why.text);
+            return false;
+        }
+    }
+    return true;
+}
+
+// Which directions the fovea takes, and where they came from.
+static enum store_fovea follow(const struct show *show, const struct fovea *fovea, int64_t start_ns,
+                               struct fovea_use *out)
+{
+    if (!show->desc->gaze) {
+        *out = (struct fovea_use){.known = false};
+        return STORE_FOVEA_FIXED;
+    }
+    fovea_at(fovea, start_ns, out);
+    return out->lost ? STORE_FOVEA_LOST : STORE_FOVEA_GAZE;
+}
+
+static void fill_fovea(const struct fovea_use *use, enum store_fovea source, struct store_frame *row)
+{
+    for (int eye = 0; eye < EYES; eye++) {
+        row->fovea_deg[eye][0] = use->x_deg[eye];
+        row->fovea_deg[eye][1] = use->y_deg[eye];
+    }
+    row->fovea_source = source;
+    row->gaze_id = use->sample_id;
+    row->gaze_age_us = use->known ? (double)use->age_ns * 1e-3 : NAN;
+}
+
+// Renders the option of the view; fills what the row tells about it.
+static bool draw_option(struct show *show, const struct machine_view *view, const struct fovea *fovea,
+                        struct store_frame *row, char *error, size_t error_size)
+{
+    struct fovea_use use;
+    struct frame_stats stats;
+    enum store_fovea source = follow(show, fovea, row->start_ns, &use);
+    struct frame frame = stage_frame(show->desc->stage, view, show->number, &use, &row->head_pose);
+    struct renderer_option *option = stage_option(show->desc->stage, view->slot);
+    memset(&stats, 0, sizeof stats);
+    if (!option || !renderer_draw(option, &frame, &stats)) {
+        snprintf(error, error_size, "the GPU could not draw frame %llu", (unsigned long long)show->number);
+        return false;
+    }
+    if (show->measure && stage_reference(show->desc->stage) && measure_due(show->measure, view) &&
+        !measure_take(show->measure, view, scene_index(show, view->trial_index), option,
+                      stage_reference(show->desc->stage), &frame)) {
+        snprintf(error, error_size, "the image error of frame %llu could not be measured",
+                 (unsigned long long)show->number);
+        return false;
+    }
+    fill_fovea(&use, source, row);
+    row->condition_id = show->desc->ids->condition_ids[view->condition];
+    row->cpu_us = stats.cpu_ms * 1e3;
+    row->gpu_us = stats.gpu_ms * 1e3;
+    row->shaded_px = (int64_t)stats.shaded_px;
+    row->triangles = (int64_t)stats.triangles;
+    return true;
+}
+
+static struct store_frame empty_row(const struct show *show, const struct machine_view *view,
+                                    const struct recorder *recorder, int64_t start_ns)
+{
+    static const enum store_phase phases[] = {[MACHINE_PHASE_STIMULUS] = STORE_STIMULUS,
+                                              [MACHINE_PHASE_FADE] = STORE_FADE,
+                                              [MACHINE_PHASE_QUESTION] = STORE_QUESTION,
+                                              [MACHINE_PHASE_REST] = STORE_REST};
+    bool stimulus = view->screen == MACHINE_STIMULUS;
+    return (struct store_frame){
+        .session_id = show->desc->ids->session_id,
+        .segment_id = show->desc->ids->segment_id,
+        .trial_id = recorder->trial_id,
+        .attempt = recorder->trial_id ? recorder->attempt : 0,
+        .number = show->number,
+        .option = !stimulus || view->slot == PLAN_SLOT_NONE ? STORE_NO_SLOT
+                  : view->slot == PLAN_SLOT_A               ? STORE_A
+                                                            : STORE_B,
+        .phase = phases[view->phase],
+        .fade_level = view->fade,
+        .start_ns = start_ns,
+        .cpu_us = NAN,
+        .gpu_us = NAN,
+        .gaze_age_us = NAN,
+        .fovea_deg = {{NAN, NAN}, {NAN, NAN}},
+        .fovea_source = STORE_NO_FOVEA,
+        .target_x_deg = NAN,
+        .target_y_deg = NAN,
+        .shaded_px = STORE_UNKNOWN,
+        .triangles = STORE_UNKNOWN,
+    };
+}
+
+// When the frame reached the eyes: computed, since neither kind of display reports it.
+static void time_row(struct show *show, struct store_frame *row)
+{
+    struct display *display = show->desc->display;
+    double refresh_ns = display->refresh_hz > 0.0 ? 1e9 / display->refresh_hz : NAN;
+    row->present_estimated = true;
+    if (display->simulated_clock) {
+        row->present_ns = row->start_ns + (int64_t)llround(refresh_ns);
+        return;
+    }
+    row->present_ns = display_now_ns(display) - show->desc->origin_ns;
+    row->late =
+        show->last_present_ns >= 0 && (double)(row->present_ns - show->last_present_ns) > 1.5 * refresh_ns;
+    show->last_present_ns = row->present_ns;
+}
+
+bool show_frame(struct show *show, const struct machine_view *view, const struct screen_state *state,
+                const struct fovea *fovea, const struct recorder *recorder, int64_t start_ns, char *error,
+                size_t error_size)
+{
+    struct screen screen;
+    struct store_frame row = empty_row(show, view, recorder, start_ns);
+    struct renderer_option *option = NULL;
+    bool visible = view->screen == MACHINE_STIMULUS && view->slot != PLAN_SLOT_NONE && view->fade < 1.0;
+    if (visible) {
+        if (!draw_option(show, view, fovea, &row, error, error_size))
+            return false;
+        option = stage_option(show->desc->stage, view->slot);
+    }
+    screen_of(view, state, &screen);
+    if (display_resized(show->desc->display))
+        renderer_resized(show->desc->renderer);
+    if (!overlay_set(&show->overlay, &screen) ||
+        !renderer_show(show->desc->renderer, option, visible ? view->fade : 1.0)) {
+        snprintf(error, error_size, "frame %llu could not be shown", (unsigned long long)show->number);
+        return false;
+    }
+    time_row(show, &row);
+    display_shown(show->desc->display);
+    store_push_frame(show->desc->store, &row); // what does not fit is counted and reported by the store
+    show->number++;
+    return true;
+}

@@ -1,0 +1,32 @@
+// Draws one frame of the session, shows it and logs it.
+#ifndef APP_SESSION_SHOW_H
+#define APP_SESSION_SHOW_H
+
+#include "app/session/measure.h"
+#include "app/session/overlay.h"
+#include "app/session/record.h"
+#include "app/session/session.h"
+
+struct show {
+    const struct session_desc *desc;
+    struct overlay overlay;
+    struct measure *measure; // NULL: errors are not measured
+    uint64_t number;         // of the next frame
+    int64_t last_present_ns; // -1: none
+};
+
+// False: out of memory.
+bool show_init(struct show *show, const struct session_desc *desc);
+void show_finish(struct show *show);
+
+// False with a sentence. `recorder` says which trial runs.
+bool show_frame(struct show *show, const struct machine_view *view, const struct screen_state *state,
+                const struct fovea *fovea, const struct recorder *recorder, int64_t start_ns, char *error,
+                size_t error_size);
+
+// What the measured frames say about a trial's options; 0 where nothing was measured.
+struct observer_errors show_errors(const struct show *show, uint32_t trial);
+// Writes the errors of a trial's options into the store.
+bool show_store_errors(const struct show *show, uint32_t trial, char *error, size_t error_size);
+
+#endif

@@ -1,0 +1,171 @@
+#include "app/session/stage.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { NO_TRIAL = -1 };
+
+struct stage {
+    struct stage_desc desc;
+    int64_t trial; // prepared, or NO_TRIAL
+    struct stage_scene *scene;
+    struct renderer_option *options[2];
+    struct renderer_option *reference;
+    uint64_t uses;
+};
+
+struct stage *stage_create(const struct stage_desc *desc)
+{
+    struct stage *stage = calloc(1, sizeof *stage);
+    if (!stage)
+        return NULL;
+    stage->desc = *desc;
+    stage->trial = NO_TRIAL;
+    return stage;
+}
+
+static void clear_options(struct stage *stage)
+{
+    for (int slot = 0; slot < 2; slot++) {
+        renderer_option_destroy(stage->options[slot]);
+        stage->options[slot] = NULL;
+    }
+    renderer_option_destroy(stage->reference);
+    stage->reference = NULL;
+    stage->trial = NO_TRIAL;
+}
+
+static void evict(struct stage_scene *scene)
+{
+    renderer_scene_destroy(scene->resident);
+    scene->resident = NULL;
+}
+
+void stage_destroy(struct stage *stage)
+{
+    if (!stage)
+        return;
+    clear_options(stage);
+    for (size_t i = 0; i < stage->desc.scene_count; i++)
+        if (stage->desc.scenes[i].resident)
+            evict(&stage->desc.scenes[i]);
+    free(stage);
+}
+
+bool stage_choice(const struct plan_condition *condition, struct mode_choice *out)
+{
+    *out = (struct mode_choice){.mode = mode_find(condition->mode)};
+    for (uint32_t i = 0; out->mode && i < out->mode->parameter_count; i++)
+        out->values[i] = condition->values[i];
+    return out->mode != NULL;
+}
+
+// Puts the scene on the GPU; the one unused the longest makes room.
+static bool bring(struct stage *stage, struct stage_scene *scene)
+{
+    size_t resident = 0;
+    struct stage_scene *oldest = NULL;
+    scene->used = ++stage->uses;
+    if (scene->resident)
+        return true;
+    for (size_t i = 0; i < stage->desc.scene_count; i++) {
+        struct stage_scene *other = &stage->desc.scenes[i];
+        if (!other->resident)
+            continue;
+        resident++;
+        if (!oldest || other->used < oldest->used)
+            oldest = other;
+    }
+    if (resident >= STAGE_RESIDENT)
+        evict(oldest);
+    scene->resident = renderer_scene_create(stage->desc.renderer, scene->scene);
+    return scene->resident != NULL;
+}
+
+static struct stage_scene *find_scene(struct stage *stage, const char *name)
+{
+    for (size_t i = 0; i < stage->desc.scene_count; i++)
+        if (strcmp(stage->desc.scenes[i].name, name) == 0)
+            return &stage->desc.scenes[i];
+    return NULL;
+}
+
+static bool make_options(struct stage *stage, const struct plan_trial *trial, char *error, size_t error_size)
+{
+    struct renderer_scene *resident = stage->scene->resident;
+    for (int slot = 0; slot < 2; slot++) {
+        struct mode_choice choice;
+        if (trial->option[slot] < 0)
+            continue;
+        const struct plan_condition *condition = &stage->desc.plan->conditions[trial->option[slot]];
+        if (stage_choice(condition, &choice))
+            stage->options[slot] = renderer_option_create(stage->desc.renderer, resident, &choice);
+        if (!stage->options[slot]) {
+            snprintf(error, error_size, "the mode '%s' cannot be set up on this device for the scene '%s'",
+                     condition->mode, trial->scene);
+            return false;
+        }
+    }
+    if (stage->desc.reference)
+        stage->reference = renderer_option_create(stage->desc.renderer, resident, stage->desc.reference);
+    if (stage->desc.reference && !stage->reference) {
+        snprintf(error, error_size, "the reference cannot be set up on this device for the scene '%s'",
+                 trial->scene);
+        return false;
+    }
+    return true;
+}
+
+bool stage_prepare(struct stage *stage, uint32_t trial, char *error, size_t error_size)
+{
+    const struct plan_trial *planned = &stage->desc.plan->trials[trial];
+    if (stage->trial == (int64_t)trial)
+        return true;
+    clear_options(stage);
+    stage->scene = find_scene(stage, planned->scene);
+    if (!stage->scene || !bring(stage, stage->scene)) {
+        snprintf(error, error_size, "the scene '%s' cannot be put on the GPU", planned->scene);
+        return false;
+    }
+    if (!make_options(stage, planned, error, error_size)) {
+        clear_options(stage);
+        return false;
+    }
+    stage->trial = (int64_t)trial;
+    return true;
+}
+
+struct renderer_option *stage_option(struct stage *stage, enum plan_slot slot)
+{
+    return slot == PLAN_SLOT_NONE ? NULL : stage->options[slot];
+}
+
+struct renderer_option *stage_reference(struct stage *stage)
+{
+    return stage->reference;
+}
+
+struct frame stage_frame(const struct stage *stage, const struct machine_view *view, uint64_t number,
+                         const struct fovea_use *fovea, struct pose *out_head)
+{
+    const struct protocol_settings *settings = view->trial->resolved;
+    double time_s = (double)view->stimulus_ns * 1e-9;
+    int moving = stage->desc.moving_setting;
+    *out_head =
+        camera_path_pose(&stage->scene->scene->path, settings->camera == PROTOCOL_CAMERA_STILL ? 0.0 : time_s);
+    struct frame frame = {
+        .number = number,
+        .animation_s = moving >= 0 && settings->render[moving] > 0.5 ? time_s : 0.0,
+        .cut = view->trial_started,
+    };
+    for (int eye = 0; eye < EYES; eye++)
+        frame.eyes[eye] = (struct frame_eye){
+            .pose = viewing_eye_pose(out_head, eye, stage->desc.ipd_m),
+            .fov = stage->desc.fov,
+            .gaze_x_deg = fovea->x_deg[eye],
+            .gaze_y_deg = fovea->y_deg[eye],
+        };
+    return frame;
+}

@@ -1,0 +1,53 @@
+// What a trial shows: its scene on the GPU and its two options, made ready before the trial starts.
+//
+// Use: stage_create -> stage_prepare while the trial before it rests -> stage_option, stage_frame per frame
+//      -> stage_destroy before the renderer. Each scene is uploaded once and stays while there is room.
+// Does not: decide what is shown, present frames, keep time.
+#ifndef APP_SESSION_STAGE_H
+#define APP_SESSION_STAGE_H
+
+#include "app/gaze/fovea.h"
+#include "renderer/renderer.h"
+#include "studies/engine/machine.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+enum { STAGE_RESIDENT = 3 }; // scenes on the GPU at once
+
+struct stage_scene {
+    const char *name;                // as the protocol names it; borrowed
+    struct scene *scene;             // borrowed
+    struct renderer_scene *resident; // NULL: not on the GPU
+    uint64_t used;                   // when, for choosing what leaves
+};
+
+struct stage_desc {
+    struct renderer *renderer;  // borrowed
+    const struct plan *plan;    // borrowed
+    struct stage_scene *scenes; // borrowed; name and scene filled in, the rest zero
+    size_t scene_count;
+    struct viewing_fov fov; // of each eye
+    double ipd_m;
+    const struct mode_choice *reference; // made for each trial too, to measure against; NULL: not
+    int moving_setting; // index of the protocol's setting that lets objects move; -1: they never do
+};
+
+struct stage;
+struct stage *stage_create(const struct stage_desc *desc); // NULL: out of memory
+void stage_destroy(struct stage *stage);                   // NULL is fine
+
+// The options of a trial; nothing where they are ready already. False with a sentence.
+bool stage_prepare(struct stage *stage, uint32_t trial, char *error, size_t error_size);
+struct renderer_option *stage_option(struct stage *stage, enum plan_slot slot); // NULL: none
+struct renderer_option *stage_reference(struct stage *stage);                   // NULL: none
+
+// One frame's inputs for the prepared trial.
+struct frame stage_frame(const struct stage *stage, const struct machine_view *view, uint64_t number,
+                         const struct fovea_use *fovea, struct pose *out_head);
+
+// The option a condition of the plan stands for. False: the mode is unknown (the protocol was checked, so
+// never).
+bool stage_choice(const struct plan_condition *condition, struct mode_choice *out);
+
+#endif
