@@ -239,12 +239,12 @@ CREATE TABLE frame (
     late INTEGER NOT NULL CHECK (late IN (0, 1)), -- shown at least one refresh after its turn
     gaze_id INTEGER REFERENCES gaze (id), -- the sample the fovea followed
     gaze_age_us REAL, -- of that sample at start_ns
-    fovea TEXT CHECK (json_valid(fovea)), -- JSON {"left":[x,y],"right":[x,y]}, degrees, as used
+    fovea TEXT CHECK (fovea IS NULL OR json_valid(fovea)), -- JSON {"left":[x,y],"right":[x,y]}, degrees, as used
     fovea_source TEXT CHECK (fovea_source IN ('gaze', 'target', 'fixed', 'lost')),
-    effective TEXT CHECK (json_valid(effective)), -- JSON of what was really rendered, where it differs from condition
+    effective TEXT CHECK (effective IS NULL OR json_valid(effective)), -- JSON of what was really rendered, where it differs from condition
     target_x_deg REAL, -- the fixation target
     target_y_deg REAL,
-    head_pose TEXT CHECK (json_valid(head_pose)), -- JSON {"position":[x,y,z],"orientation":[x,y,z,w]}, metres, world
+    head_pose TEXT CHECK (head_pose IS NULL OR json_valid(head_pose)), -- JSON {"position":[x,y,z],"orientation":[x,y,z,w]}, metres, world
     shaded_px INTEGER, -- pixels of both eyes shaded
     triangles INTEGER  -- both eyes, after culling
 ) STRICT;
