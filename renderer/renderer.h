@@ -41,7 +41,7 @@ struct renderer_desc {
 
 struct renderer_device {
     char name[256];
-    char driver[256]; // name and version
+    char driver[528]; // name and version
     bool software;
 };
 

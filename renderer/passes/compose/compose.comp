@@ -1,0 +1,32 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+#include "renderer/shared/shared.h"
+#include "renderer/shared/view.glsl"
+
+layout(local_size_x = SHARED_TILE, local_size_y = SHARED_TILE) in;
+layout(constant_id = 0) const bool has_id = false;
+
+layout(scalar, binding = 0) readonly buffer Frame { shared_frame frame; };
+layout(binding = 1) uniform sampler2DArray depth_image;
+layout(binding = 2, r8ui) uniform readonly uimage2DArray redraw_map;
+layout(binding = 3, rgba32f) uniform writeonly image2DArray position_image;
+layout(binding = 4) uniform usampler2DArray id_image;
+
+void main()
+{
+    ivec3 pixel = ivec3(gl_GlobalInvocationID);
+    if (pixel.x >= int(frame.width) || pixel.y >= int(frame.height) || imageLoad(redraw_map, pixel).x == 0u)
+        return;
+    vec3 ray = view_ray(frame.eyes[pixel.z], vec2(frame.width, frame.height), vec2(pixel.xy) + 0.5);
+    mat4 world_from_eye = frame.eyes[pixel.z].world_from_eye;
+    vec3 direction = mat3(world_from_eye) * ray;
+    float depth = texelFetch(depth_image, pixel, 0).x;
+    vec4 position = vec4(normalize(direction), -1.0);
+    if (depth > 0.0) {
+        position = vec4(world_from_eye[3].xyz + direction * (frame.near_m / depth), 1.0);
+        if (has_id)
+            position.w += float(texelFetch(id_image, pixel, 0).x);
+    }
+    imageStore(position_image, pixel, position);
+}

@@ -1,0 +1,292 @@
+#include "renderer/passes/gbuffer/gbuffer.h"
+
+#include "gbuffer.frag.h"
+#include "gbuffer.vert.h"
+#include "mask.frag.h"
+#include "mask.vert.h"
+
+#include <stddef.h>
+
+static const VkFormat colour_formats[] = {VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_R32_UINT, VK_FORMAT_R8G8_UNORM,
+                                          VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_R16_UINT};
+enum { TARGETS = countof(colour_formats) };
+
+static const VkVertexInputBindingDescription vertex_binding = {0, sizeof(struct scene_vertex),
+                                                               VK_VERTEX_INPUT_RATE_VERTEX};
+static const VkVertexInputAttributeDescription attributes[] = {
+    {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(struct scene_vertex, position)},
+    {1, 0, VK_FORMAT_R16G16_SNORM, offsetof(struct scene_vertex, normal)},
+    {2, 0, VK_FORMAT_R16G16B16A16_SNORM, offsetof(struct scene_vertex, tangent)},
+    {3, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(struct scene_vertex, uv[0])},
+    {4, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(struct scene_vertex, uv[1])},
+    {5, 0, VK_FORMAT_R8G8B8A8_UNORM, offsetof(struct scene_vertex, colour)},
+};
+
+// In the order of colour_formats; NULL where the target is not built.
+static void targets(const struct gbuffer *g, const struct gpu_image *out[TARGETS])
+{
+    out[0] = &g->base;
+    out[1] = &g->normal;
+    out[2] = &g->surface;
+    out[3] = g->has_emissive ? &g->emissive : NULL;
+    out[4] = g->has_id ? &g->id : NULL;
+}
+
+static bool create_targets(struct gbuffer *g)
+{
+    const VkImageUsageFlags colour = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+    const VkImageUsageFlags depth = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+    const struct {
+        const char *name;
+        VkFormat format;
+        VkImageUsageFlags usage;
+        struct gpu_image *image;
+        bool wanted;
+    } list[] = {
+        {"g-buffer base colour", colour_formats[0], colour, &g->base, true},
+        {"g-buffer normal", colour_formats[1], colour, &g->normal, true},
+        {"g-buffer surface", colour_formats[2], colour, &g->surface, true},
+        {"g-buffer emissive", colour_formats[3], colour, &g->emissive, g->has_emissive},
+        {"g-buffer id", colour_formats[4], colour, &g->id, g->has_id},
+        {"g-buffer depth", VK_FORMAT_D32_SFLOAT, depth, &g->depth, true},
+    };
+    for (size_t i = 0; i < countof(list); i++) {
+        const struct gpu_image_desc desc = {.name = list[i].name,
+                                            .format = list[i].format,
+                                            .width = g->width,
+                                            .height = g->height,
+                                            .layers = 2,
+                                            .array = true,
+                                            .usage = list[i].usage};
+        if (list[i].wanted && !gpu_image_create(g->gpu, &desc, list[i].image))
+            return false;
+    }
+    return true;
+}
+
+static bool create_layouts(struct gbuffer *g, const struct gpu_buffer *frame)
+{
+    const VkShaderStageFlags both = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
+    const struct gpu_binding bindings[] = {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, both},
+                                           {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, both},
+                                           {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, both},
+                                           {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, both}};
+    const struct gpu_resource resources[] = {{.buffer = frame},
+                                             {.buffer = &g->scene->items},
+                                             {.buffer = &g->scene->objects},
+                                             {.buffer = &g->scene->materials}};
+    g->frame_layout = gpu_set_layout_create(g->gpu, bindings, countof(bindings));
+    if (!g->frame_layout)
+        return false;
+    g->frame_set = gpu_set_create(g->gpu, g->frame_layout, bindings, resources, countof(resources));
+    const VkPipelineLayoutCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+        .setLayoutCount = 2,
+        .pSetLayouts = (const VkDescriptorSetLayout[]){g->frame_layout, g->scene->material_layout},
+        .pushConstantRangeCount = 1,
+        .pPushConstantRanges = &(VkPushConstantRange){VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof(uint32_t)},
+    };
+    return g->frame_set && VK(g->gpu, vkCreatePipelineLayout(g->gpu->device, &info, NULL, &g->layout));
+}
+
+// One pipeline for every set of features that occurs in the scene.
+static bool create_pipelines(struct gbuffer *g)
+{
+    const struct gpu_image *images[TARGETS];
+    VkFormat formats[TARGETS];
+    targets(g, images);
+    for (uint32_t i = 0; i < TARGETS; i++)
+        formats[i] = images[i] ? colour_formats[i] : VK_FORMAT_UNDEFINED;
+    for (uint32_t b = 0; b < g->scene->bucket_count; b++) {
+        uint32_t features = g->scene->buckets[b].features, known = 0;
+        while (known < g->pipeline_count && g->pipelines[known].features != features)
+            known++;
+        if (known < g->pipeline_count)
+            continue;
+        if (g->pipeline_count == GBUFFER_PIPELINES) {
+            gpu_say(g->gpu, GPU_ERROR, "the scene's materials need more than %d pipelines", GBUFFER_PIPELINES);
+            return false;
+        }
+        int32_t constants[SCENE_SLOTS + 2];
+        for (uint32_t slot = 0; slot < SCENE_SLOTS; slot++)
+            constants[slot] = (int32_t)(features >> slot & 1);
+        constants[SCENE_SLOTS] = (features & SCENE_GPU_MASK) != 0;
+        constants[SCENE_SLOTS + 1] = (features & SCENE_GPU_EMISSIVE) != 0;
+        VkPipeline pipeline =
+            gpu_raster_create(g->gpu, &(struct gpu_raster_desc){.name = "g-buffer",
+                                                                .vertex = {gbuffer_vert, sizeof gbuffer_vert},
+                                                                .fragment = {gbuffer_frag, sizeof gbuffer_frag},
+                                                                .layout = g->layout,
+                                                                .vertex_binding = &vertex_binding,
+                                                                .attributes = attributes,
+                                                                .attribute_count = countof(attributes),
+                                                                .colour_formats = formats,
+                                                                .colour_count = TARGETS,
+                                                                .depth_format = VK_FORMAT_D32_SFLOAT,
+                                                                .depth_compare = VK_COMPARE_OP_GREATER,
+                                                                .constants = constants,
+                                                                .constant_count = countof(constants)});
+        if (!pipeline)
+            return false;
+        g->pipelines[g->pipeline_count].features = features;
+        g->pipelines[g->pipeline_count++].pipeline = pipeline;
+    }
+    return true;
+}
+
+static bool create_mask(struct gbuffer *g, VkImageView redraw_map)
+{
+    const struct gpu_binding binding = {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_SHADER_STAGE_FRAGMENT_BIT};
+    g->mask_set_layout = gpu_set_layout_create(g->gpu, &binding, 1);
+    if (!g->mask_set_layout)
+        return false;
+    g->mask_set = gpu_set_create(g->gpu, g->mask_set_layout, &binding, &(struct gpu_resource){.view = redraw_map}, 1);
+    const VkPipelineLayoutCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+        .setLayoutCount = 1,
+        .pSetLayouts = &g->mask_set_layout,
+        .pushConstantRangeCount = 1,
+        .pPushConstantRanges = &(VkPushConstantRange){VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(uint32_t)},
+    };
+    if (!g->mask_set || !VK(g->gpu, vkCreatePipelineLayout(g->gpu->device, &info, NULL, &g->mask_layout)))
+        return false;
+    g->mask = gpu_raster_create(g->gpu, &(struct gpu_raster_desc){.name = "redraw mask",
+                                                                  .vertex = {mask_vert, sizeof mask_vert},
+                                                                  .fragment = {mask_frag, sizeof mask_frag},
+                                                                  .layout = g->mask_layout,
+                                                                  .depth_format = VK_FORMAT_D32_SFLOAT,
+                                                                  .depth_compare = VK_COMPARE_OP_ALWAYS});
+    return g->mask;
+}
+
+bool gbuffer_init(struct gbuffer *g, const struct gbuffer_desc *desc)
+{
+    *g = (struct gbuffer){.gpu = desc->gpu,
+                          .scene = desc->scene,
+                          .width = desc->width,
+                          .height = desc->height,
+                          .has_emissive = (desc->scene->features & SCENE_GPU_EMISSIVE) != 0,
+                          .has_id = desc->ids};
+    return create_targets(g) && create_layouts(g, desc->frame) && create_pipelines(g) &&
+           (!desc->redraw_map || create_mask(g, desc->redraw_map));
+}
+
+void gbuffer_finish(struct gbuffer *g)
+{
+    if (!g->gpu)
+        return;
+    VkDevice device = g->gpu->device;
+    vkDestroyPipeline(device, g->mask, NULL);
+    vkDestroyPipelineLayout(device, g->mask_layout, NULL);
+    gpu_set_free(g->gpu, g->mask_set);
+    vkDestroyDescriptorSetLayout(device, g->mask_set_layout, NULL);
+    for (uint32_t i = 0; i < g->pipeline_count; i++)
+        vkDestroyPipeline(device, g->pipelines[i].pipeline, NULL);
+    vkDestroyPipelineLayout(device, g->layout, NULL);
+    gpu_set_free(g->gpu, g->frame_set);
+    vkDestroyDescriptorSetLayout(device, g->frame_layout, NULL);
+    struct gpu_image *images[] = {&g->base, &g->normal, &g->surface, &g->emissive, &g->id, &g->depth};
+    for (size_t i = 0; i < countof(images); i++)
+        gpu_image_destroy(g->gpu, images[i]);
+    *g = (struct gbuffer){0};
+}
+
+uint64_t gbuffer_memory(const struct gbuffer *g)
+{
+    return g->base.bytes + g->normal.bytes + g->surface.bytes + g->emissive.bytes + g->id.bytes + g->depth.bytes;
+}
+
+static void draw_mask(const struct gbuffer *g, VkCommandBuffer cmd, uint32_t eye)
+{
+    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, g->mask);
+    vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, g->mask_layout, 0, 1, &g->mask_set, 0, NULL);
+    vkCmdPushConstants(cmd, g->mask_layout, VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof eye, &eye);
+    vkCmdSetCullMode(cmd, VK_CULL_MODE_NONE);
+    vkCmdSetFrontFace(cmd, VK_FRONT_FACE_COUNTER_CLOCKWISE);
+    vkCmdDraw(cmd, 3, 1, 0, 0);
+}
+
+static VkPipeline pipeline_for(const struct gbuffer *g, uint32_t features)
+{
+    uint32_t i = 0;
+    while (g->pipelines[i].features != features)
+        i++;
+    return g->pipelines[i].pipeline;
+}
+
+static void draw_buckets(const struct gbuffer *g, VkCommandBuffer cmd, const struct gpu_buffer *draws,
+                         const struct gpu_buffer *draw_counts, uint32_t eye)
+{
+    const struct scene_gpu *s = g->scene;
+    vkCmdBindVertexBuffers(cmd, 0, 1, &s->vertices.buffer, &(VkDeviceSize){0});
+    vkCmdBindIndexBuffer(cmd, s->indices.buffer, 0, VK_INDEX_TYPE_UINT32);
+    vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, g->layout, 0, 1, &g->frame_set, 0, NULL);
+    vkCmdPushConstants(cmd, g->layout, VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof eye, &eye);
+    for (uint32_t b = 0; b < s->bucket_count; b++) {
+        const struct scene_bucket *bucket = &s->buckets[b];
+        vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_for(g, bucket->features));
+        vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, g->layout, 1, 1,
+                                &s->material_sets[bucket->material], 0, NULL);
+        vkCmdSetCullMode(cmd, bucket->double_sided ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT);
+        vkCmdSetFrontFace(cmd, bucket->mirrored ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE);
+        vkCmdDrawIndexedIndirectCount(cmd, draws->buffer,
+                                      ((VkDeviceSize)eye * s->item_count + bucket->first_item) * sizeof(struct shared_draw),
+                                      draw_counts->buffer, ((VkDeviceSize)eye * s->bucket_count + b) * sizeof(uint32_t),
+                                      bucket->item_count, sizeof(struct shared_draw));
+    }
+}
+
+void gbuffer_record(const struct gbuffer *g, VkCommandBuffer cmd, const struct gpu_buffer *draws,
+                    const struct gpu_buffer *draw_counts, bool masked)
+{
+    const struct gpu_image *images[TARGETS];
+    targets(g, images);
+    for (uint32_t i = 0; i < TARGETS; i++) {
+        if (images[i])
+            gpu_image_layout(cmd, images[i], VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+    }
+    gpu_image_layout(cmd, &g->depth, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
+    for (uint32_t eye = 0; eye < 2; eye++) {
+        VkRenderingAttachmentInfo colours[TARGETS];
+        for (uint32_t i = 0; i < TARGETS; i++)
+            colours[i] = (VkRenderingAttachmentInfo){.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
+                                                     .imageView = images[i] ? images[i]->layer_views[eye] : VK_NULL_HANDLE,
+                                                     .imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                                                     // the id of the background is 0; the rest is read only under depth
+                                                     .loadOp = i == 4 ? VK_ATTACHMENT_LOAD_OP_CLEAR
+                                                                      : VK_ATTACHMENT_LOAD_OP_DONT_CARE,
+                                                     .storeOp = VK_ATTACHMENT_STORE_OP_STORE};
+        const VkRenderingAttachmentInfo depth = {.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
+                                                 .imageView = g->depth.layer_views[eye],
+                                                 .imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
+                                                 .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
+                                                 .storeOp = VK_ATTACHMENT_STORE_OP_STORE};
+        const VkRect2D area = {.extent = {g->width, g->height}};
+        VkRenderingInfo info = {.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
+                                .renderArea = area,
+                                .layerCount = 1,
+                                .pDepthAttachment = &depth};
+        vkCmdSetViewport(cmd, 0, 1, &(VkViewport){0, 0, (float)g->width, (float)g->height, 0, 1});
+        vkCmdSetScissor(cmd, 0, 1, &area);
+        VkRenderingAttachmentInfo kept = depth;
+        if (masked) {
+            vkCmdBeginRendering(cmd, &info);
+            draw_mask(g, cmd, eye);
+            vkCmdEndRendering(cmd);
+            gpu_barrier(cmd, VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT, VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT);
+            kept.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
+        }
+        info.pDepthAttachment = &kept;
+        info.colorAttachmentCount = TARGETS;
+        info.pColorAttachments = colours;
+        vkCmdBeginRendering(cmd, &info);
+        draw_buckets(g, cmd, draws, draw_counts, eye);
+        vkCmdEndRendering(cmd);
+    }
+    for (uint32_t i = 0; i < TARGETS; i++) {
+        if (images[i])
+            gpu_image_layout(cmd, images[i], VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                             VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    }
+    gpu_image_layout(cmd, &g->depth, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL);
+}

@@ -1,0 +1,79 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+#include "renderer/shared/shared.h"
+#include "renderer/shared/normal.glsl"
+
+layout(constant_id = 0) const bool has_base = false;
+layout(constant_id = 1) const bool has_metallic_roughness = false;
+layout(constant_id = 2) const bool has_normal = false;
+layout(constant_id = 3) const bool has_occlusion = false;
+layout(constant_id = 4) const bool has_emissive = false;
+layout(constant_id = 5) const bool alpha_mask = false;
+layout(constant_id = 6) const bool glows = false;
+
+layout(scalar, set = 0, binding = 3) readonly buffer Materials { shared_material materials[]; };
+layout(set = 1, binding = 0) uniform sampler2D base_texture;
+layout(set = 1, binding = 1) uniform sampler2D metallic_roughness_texture;
+layout(set = 1, binding = 2) uniform sampler2D normal_texture;
+layout(set = 1, binding = 3) uniform sampler2D occlusion_texture;
+layout(set = 1, binding = 4) uniform sampler2D emissive_texture;
+
+layout(location = 0) in vec3 in_normal;
+layout(location = 1) in vec4 in_tangent;
+layout(location = 2) in vec4 in_uv;
+layout(location = 3) in vec4 in_colour;
+layout(location = 4) flat in uvec2 in_ids;
+
+layout(location = 0) out vec4 out_base;
+layout(location = 1) out uint out_normal;
+layout(location = 2) out vec4 out_surface;
+layout(location = 3) out vec4 out_emissive;
+layout(location = 4) out uint out_id;
+
+vec2 uv_of(shared_material m, uint slot)
+{
+    vec3 uv = vec3((m.uv_sets >> slot & 1u) != 0u ? in_uv.zw : in_uv.xy, 1.0);
+    uint t = 6u * slot;
+    return vec2(dot(uv, vec3(m.transforms[t], m.transforms[t + 1], m.transforms[t + 2])),
+                dot(uv, vec3(m.transforms[t + 3], m.transforms[t + 4], m.transforms[t + 5])));
+}
+
+void main()
+{
+    shared_material m = materials[in_ids.x];
+    vec4 base = m.base_colour * in_colour;
+    if (has_base)
+        base *= texture(base_texture, uv_of(m, 0));
+    if (alpha_mask && base.a < m.alpha_cutoff)
+        discard;
+
+    vec3 normal = normalize(in_normal);
+    if (has_normal) {
+        vec3 t = texture(normal_texture, uv_of(m, 2)).xyz * 2.0 - 1.0;
+        t.xy *= m.normal_scale;
+        vec3 tangent = normalize(in_tangent.xyz - normal * dot(normal, in_tangent.xyz));
+        vec3 bitangent = cross(normal, tangent) * in_tangent.w;
+        normal = normalize(tangent * t.x + bitangent * t.y + normal * t.z);
+    }
+    if (!gl_FrontFacing)
+        normal = -normal;
+
+    vec2 surface = vec2(m.roughness, m.metallic);
+    if (has_metallic_roughness)
+        surface *= texture(metallic_roughness_texture, uv_of(m, 1)).gb;
+    float occlusion = 1.0;
+    if (has_occlusion)
+        occlusion = mix(1.0, texture(occlusion_texture, uv_of(m, 3)).r, m.occlusion_strength);
+    vec3 emissive = vec3(0.0);
+    if (glows) {
+        emissive = m.emissive;
+        if (has_emissive)
+            emissive *= texture(emissive_texture, uv_of(m, 4)).rgb;
+    }
+    out_base = vec4(base.rgb, occlusion);
+    out_normal = packSnorm2x16(normal_encode(normal));
+    out_surface = vec4(surface, 0.0, 0.0);
+    out_emissive = vec4(emissive, 0.0);
+    out_id = in_ids.y;
+}

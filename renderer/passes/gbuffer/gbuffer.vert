@@ -1,0 +1,41 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+#include "renderer/shared/shared.h"
+#include "renderer/shared/normal.glsl"
+
+layout(scalar, set = 0, binding = 0) readonly buffer Frame { shared_frame frame; };
+layout(scalar, set = 0, binding = 1) readonly buffer Items { shared_item items[]; };
+layout(scalar, set = 0, binding = 2) readonly buffer Objects { shared_object objects[]; };
+layout(push_constant) uniform Push { uint eye; } push;
+
+layout(location = 0) in vec3 in_position;
+layout(location = 1) in vec2 in_normal;
+layout(location = 2) in vec4 in_tangent;
+layout(location = 3) in vec2 in_uv0;
+layout(location = 4) in vec2 in_uv1;
+layout(location = 5) in vec4 in_colour;
+
+layout(location = 0) out vec3 out_normal;
+layout(location = 1) out vec4 out_tangent;
+layout(location = 2) out vec4 out_uv; // both sets
+layout(location = 3) out vec4 out_colour;
+layout(location = 4) flat out uvec2 out_ids; // material, moving id
+
+invariant gl_Position; // the same pixels in every mode
+
+void main()
+{
+    shared_item item = items[gl_InstanceIndex];
+    mat4 m = objects[item.object].world_from_mesh;
+    gl_Position = frame.eyes[push.eye].clip_from_world * vec4((m * vec4(in_position, 1.0)).xyz, 1.0);
+    // normals go with the cofactor matrix, right for mirrored and unevenly scaled objects alike
+    mat3 linear = mat3(m);
+    mat3 cofactor = mat3(cross(linear[1], linear[2]), cross(linear[2], linear[0]), cross(linear[0], linear[1]));
+    float winding = dot(linear[0], cofactor[0]) < 0.0 ? -1.0 : 1.0;
+    out_normal = winding * (cofactor * normal_decode(in_normal));
+    out_tangent = vec4(linear * in_tangent.xyz, winding * (in_tangent.w < 0.0 ? -1.0 : 1.0));
+    out_uv = vec4(in_uv0, in_uv1);
+    out_colour = in_colour;
+    out_ids = uvec2(item.material, objects[item.object].moving_id);
+}

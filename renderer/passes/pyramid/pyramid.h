@@ -1,0 +1,51 @@
+// Hole filling and confidence: Franke et al. 2021, sections 5.1 and 5.2.
+//
+// Pull: a mip pyramid of the valid reprojected colours, whose alpha is the contrast confidence of the four inputs
+// (0: none valid). Fill: a hole takes the finest level that has a value there; the confidence of every pixel decides
+// whether it is redrawn.
+#ifndef RENDERER_PASSES_PYRAMID_PYRAMID_H
+#define RENDERER_PASSES_PYRAMID_PYRAMID_H
+
+#include "renderer/gpu/gpu.h"
+
+enum { PYRAMID_LEVELS = 15 };
+
+struct pyramid_confidence {
+    float epsilon;
+    float fovea_deg, periphery_deg; // phi_F, phi_0
+    float hole_decay;               // A
+    float dynamic_decay;            // D
+    uint32_t levels;                // set by pyramid_init
+};
+
+struct pyramid {
+    struct gpu *gpu;
+    uint32_t width, height;
+    struct pyramid_confidence confidence;
+    struct gpu_image image; // level m of the pyramid is its mip m - 1
+    VkImageView level_views[PYRAMID_LEVELS];
+    VkSampler sampler;
+    struct gpu_kernel pull, fill;
+    uint32_t pull_count;
+    VkDescriptorSet pull_sets[2][PYRAMID_LEVELS]; // by target, then by dispatch
+    VkDescriptorSet fill_sets[2];
+};
+
+struct pyramid_desc {
+    struct gpu *gpu;
+    const struct gpu_buffer *frame, *counters;
+    uint32_t width, height;
+    VkImageView colour[2], position[2]; // rgba8, rgba32f
+    VkImageView redraw_map;             // r8 uint, written
+    struct pyramid_confidence confidence;
+};
+
+bool pyramid_init(struct pyramid *pyramid, const struct pyramid_desc *desc);
+void pyramid_finish(struct pyramid *pyramid);
+// The deepest level that can matter: beyond it A^m < epsilon, and the hole is redrawn whatever its colour.
+uint32_t pyramid_levels(uint32_t width, uint32_t height, float epsilon, float hole_decay);
+void pyramid_pull(const struct pyramid *pyramid, VkCommandBuffer cmd, uint32_t target);
+// Fills holes of colour `target`, writes the redraw map and adds redrawn pixels to counters.shaded_px.
+void pyramid_fill(const struct pyramid *pyramid, VkCommandBuffer cmd, uint32_t target);
+
+#endif

@@ -1,0 +1,10 @@
+// A kept position brought to this frame: the origin's shift, then the motion of its object.
+vec4 move_position(vec4 position)
+{
+    if (position.w < 0.0)
+        return position; // a direction
+    vec3 p = position.xyz + frame.origin_shift.xyz;
+    if (position.w >= 2.0)
+        p = (motions[uint(position.w) - 1u] * vec4(p, 1.0)).xyz;
+    return vec4(p, position.w);
+}

@@ -1,0 +1,37 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+#include "renderer/shared/shared.h"
+
+layout(local_size_x = SHARED_TILE, local_size_y = SHARED_TILE) in;
+
+layout(scalar, binding = 0) readonly buffer Frame { shared_frame frame; };
+layout(scalar, binding = 1) readonly buffer Motions { mat4 motions[]; };
+layout(scalar, binding = 2) readonly buffer Keys { uint64_t keys[]; };
+layout(binding = 3, rgba32f) uniform readonly image2DArray position_from;
+layout(binding = 4, rgba8) uniform readonly image2DArray colour_from;
+layout(binding = 5, rgba32f) uniform writeonly image2DArray position_to;
+layout(binding = 6, rgba8) uniform writeonly image2DArray colour_to;
+
+#include "renderer/passes/reproject/move.glsl"
+
+void main()
+{
+    ivec3 pixel = ivec3(gl_GlobalInvocationID);
+    if (pixel.x >= int(frame.width) || pixel.y >= int(frame.height))
+        return;
+    uint64_t key = keys[(uint(pixel.z) * frame.height + uint(pixel.y)) * frame.width + uint(pixel.x)];
+    vec4 position = vec4(0.0), colour = vec4(0.0);
+    if (key != 0ul) {
+        uint index = ~uint(key & 0xfffffffful);
+        ivec3 source = ivec3(index % frame.width, index / frame.width, pixel.z);
+        position = move_position(imageLoad(position_from, source));
+        colour = imageLoad(colour_from, source);
+        // one frame older, up to 63
+        if (position.w >= 2.0 && fract(position.w) < 62.5 / 64.0)
+            position.w += 1.0 / 64.0;
+    }
+    imageStore(position_to, pixel, position);
+    imageStore(colour_to, pixel, colour);
+}

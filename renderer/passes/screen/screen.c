@@ -1,0 +1,100 @@
+#include "renderer/passes/screen/screen.h"
+
+#include "renderer/shared/shared.h"
+
+#include "screen.comp.h"
+
+static const struct gpu_binding bindings[] = {
+    {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 0},          // screen
+    {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 0}, // overlay
+    {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 0},          // colour, last: absent for gray
+};
+
+struct screen_push {
+    uint32_t width, height;
+    int32_t left[2], top[2];
+    uint32_t has_overlay, has_colour;
+    float fade;
+};
+
+static bool create_overlay(struct screen *s, const uint8_t *rgba, uint32_t width, uint32_t height)
+{
+    const struct gpu_image_desc desc = {.name = "overlay",
+                                        .format = VK_FORMAT_R8G8B8A8_UNORM,
+                                        .width = width,
+                                        .height = height,
+                                        .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT};
+    return gpu_image_create(s->gpu, &desc, &s->overlay) && gpu_image_fill(s->gpu, &s->overlay, rgba);
+}
+
+bool screen_init(struct screen *s, struct gpu *gpu, uint32_t width, uint32_t height)
+{
+    static const uint8_t nothing[4];
+    *s = (struct screen){.gpu = gpu, .width = width, .height = height};
+    const struct gpu_image_desc image = {.name = "screen",
+                                         .format = VK_FORMAT_R8G8B8A8_UNORM,
+                                         .width = 2 * width,
+                                         .height = height,
+                                         .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT};
+    const struct gpu_kernel_desc kernel = {.name = "screen",
+                                           .code = {screen_comp, sizeof screen_comp},
+                                           .bindings = bindings,
+                                           .binding_count = countof(bindings),
+                                           .push_bytes = sizeof(struct screen_push)};
+    s->sampler = gpu_sampler_create(gpu, VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                    VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE, 1);
+    return s->sampler && gpu_image_create(gpu, &image, &s->image) && gpu_kernel_create(gpu, &kernel, &s->kernel) &&
+           create_overlay(s, nothing, 1, 1);
+}
+
+void screen_finish(struct screen *s)
+{
+    if (!s->gpu)
+        return;
+    gpu_set_free(s->gpu, s->set);
+    gpu_kernel_destroy(s->gpu, &s->kernel);
+    gpu_image_destroy(s->gpu, &s->image);
+    gpu_image_destroy(s->gpu, &s->overlay);
+    vkDestroySampler(s->gpu->device, s->sampler, NULL);
+    *s = (struct screen){0};
+}
+
+bool screen_set_overlay(struct screen *s, const uint8_t *rgba, uint32_t width, uint32_t height, const int32_t left[2],
+                        const int32_t top[2])
+{
+    s->has_overlay = false;
+    if (!rgba)
+        return true;
+    gpu_image_destroy(s->gpu, &s->overlay);
+    if (!create_overlay(s, rgba, width, height))
+        return false;
+    for (int eye = 0; eye < 2; eye++) {
+        s->left[eye] = left[eye];
+        s->top[eye] = top[eye];
+    }
+    s->has_overlay = true;
+    return true;
+}
+
+void screen_record(struct screen *s, VkCommandBuffer cmd, const struct gpu_image *colour, float fade)
+{
+    // Frames are waited for, so the last set is no longer read; images differ from call to call.
+    gpu_set_free(s->gpu, s->set);
+    const struct gpu_resource resources[] = {
+        {.view = s->image.view},
+        {.view = s->overlay.view, .sampler = s->sampler, .layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL},
+        {.view = colour ? colour->view : VK_NULL_HANDLE},
+    };
+    s->set = gpu_set_create(s->gpu, s->kernel.set_layout, bindings, resources, countof(bindings) - (colour ? 0 : 1));
+    if (!s->used)
+        gpu_image_layout(cmd, &s->image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
+    s->used = true;
+    gpu_barrier(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
+    const struct screen_push push = {
+        s->width,         s->height,      {s->left[0], s->left[1]}, {s->top[0], s->top[1]},
+        s->has_overlay,   colour != NULL, fade,
+    };
+    gpu_dispatch(cmd, &s->kernel, s->set, &push, sizeof push, (s->width + SHARED_TILE - 1) / SHARED_TILE,
+                 (s->height + SHARED_TILE - 1) / SHARED_TILE, 2);
+    gpu_barrier(cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
+}

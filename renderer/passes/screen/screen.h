@@ -1,0 +1,28 @@
+// What the participant sees: both eyes side by side, mixed with gray, under an overlay.
+#ifndef RENDERER_PASSES_SCREEN_SCREEN_H
+#define RENDERER_PASSES_SCREEN_SCREEN_H
+
+#include "renderer/gpu/gpu.h"
+
+struct screen {
+    struct gpu *gpu;
+    uint32_t width, height; // per eye
+    struct gpu_image image; // rgba8, sRGB-encoded, 2 * width, layout GENERAL after the first record
+    struct gpu_image overlay;
+    struct gpu_kernel kernel;
+    VkDescriptorSet set;
+    VkSampler sampler;
+    int32_t left[2], top[2];
+    bool has_overlay;
+    bool used;
+};
+
+bool screen_init(struct screen *screen, struct gpu *gpu, uint32_t width, uint32_t height);
+void screen_finish(struct screen *screen);
+// rgba8 straight alpha; NULL removes the overlay. Outside a frame.
+bool screen_set_overlay(struct screen *screen, const uint8_t *rgba, uint32_t width, uint32_t height,
+                        const int32_t left[2], const int32_t top[2]);
+// `colour`: two layers, rgba8, layout GENERAL; NULL: gray.
+void screen_record(struct screen *screen, VkCommandBuffer cmd, const struct gpu_image *colour, float fade);
+
+#endif
