@@ -32,7 +32,7 @@ struct plan_trial {
     enum protocol_kind kind;
     const char *scene;
     char settings[PLAN_JSON]; // JSON
-    char factors[PLAN_JSON];  // JSON; of a rating {"option":"foveated"}, with "repeats" for the complement
+    char factors[PLAN_JSON];  // JSON; of a rating {"option":"foveated","order":"first"} (order: of a pair only)
     int32_t option[2];        // conditions in slots a and b; a rating has its one option in a and -1 in b
     enum plan_slot test_slot; // the slot of the block's first option; NONE where it is not shown
     enum plan_slot first_shown;
@@ -52,7 +52,8 @@ struct plan {
     uint32_t condition_count;
     struct plan_trial *trials;
     uint32_t trial_count;
-    // Largest difference over one in any balance that DESIGN promises for full factorials; 0 when all hold.
+    // By how many trials the drawn scenes and sides miss "within one", summed over all groups of the worst
+    // block: 0 when every balance holds, as it does for full factorials such as the calibration study's.
     uint32_t imbalance;
 };
 
