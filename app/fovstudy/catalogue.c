@@ -1,0 +1,110 @@
+#include "app/fovstudy/catalogue.h"
+
+#include "renderer/mode.h"
+#include "stimuli/builtin/builtin.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+_Static_assert((int)CATALOGUE_PARAMETERS >= (int)MODE_PARAMETERS, "a protocol holds every parameter of a mode");
+
+static const char *const off_on[] = {"off", "on", NULL};
+static const struct catalogue_parameter settings[] = {
+    [STUDY_MOVING_OBJECTS] =
+        {.name = "moving_objects", .unit = "", .min = 0, .max = 1, .fallback = 0, .choices = off_on},
+};
+
+bool study_bind_scene(struct bound_scene *bound, size_t *count, const char *text, char *error,
+                      size_t error_size)
+{
+    size_t length = strcspn(text, "=");
+    if (text[length] != '=' || length == 0 || !text[length + 1]) {
+        snprintf(error, error_size, "'%s' binds no scene; write NAME=FILE.glb or NAME=town:triangles=200000",
+                 text);
+        return false;
+    }
+    if (*count == STUDY_BOUND_SCENES || length >= sizeof bound->name) {
+        snprintf(error, error_size, "at most %d scenes are bound, with names of at most %zu bytes",
+                 STUDY_BOUND_SCENES, sizeof bound->name - 1);
+        return false;
+    }
+    struct bound_scene *next = &bound[(*count)++];
+    memcpy(next->name, text, length);
+    next->name[length] = '\0';
+    next->spec = text + length + 1;
+    return true;
+}
+
+// The last binding of a name holds.
+const char *study_scene_spec(const struct bound_scene *bound, size_t count, const char *name)
+{
+    for (size_t i = count; i > 0; i--)
+        if (strcmp(bound[i - 1].name, name) == 0)
+            return bound[i - 1].spec;
+    return name;
+}
+
+static size_t count_modes(size_t *out_parameters)
+{
+    size_t count = 0;
+    for (*out_parameters = 0; modes[count]; count++)
+        *out_parameters += modes[count]->parameter_count;
+    return count;
+}
+
+static void copy_modes(struct study_names *names)
+{
+    struct catalogue_parameter *next = names->parameters;
+    for (size_t m = 0; modes[m]; m++) {
+        names->modes[m] = (struct catalogue_mode){
+            .name = modes[m]->name, .parameters = next, .parameter_count = modes[m]->parameter_count};
+        for (uint32_t i = 0; i < modes[m]->parameter_count; i++) {
+            const struct mode_parameter *from = &modes[m]->parameters[i];
+            *next++ = (struct catalogue_parameter){.name = from->name,
+                                                   .unit = from->unit,
+                                                   .min = from->min,
+                                                   .max = from->max,
+                                                   .fallback = from->fallback,
+                                                   .choices = from->choices};
+        }
+    }
+}
+
+bool study_names_init(struct study_names *names, const struct bound_scene *bound, size_t count)
+{
+    size_t parameter_count = 0, mode_count = count_modes(&parameter_count), built_in = 0;
+    while (builtin_scenes[built_in].name)
+        built_in++;
+    *names = (struct study_names){
+        .modes = calloc(mode_count + 1, sizeof *names->modes),
+        .parameters = calloc(parameter_count + 1, sizeof *names->parameters),
+        .scenes = calloc(built_in + count + 1, sizeof *names->scenes),
+    };
+    if (!names->modes || !names->parameters || !names->scenes) {
+        study_names_finish(names);
+        return false;
+    }
+    copy_modes(names);
+    for (size_t i = 0; i < built_in; i++)
+        names->scenes[i] = builtin_scenes[i].name;
+    for (size_t i = 0; i < count; i++)
+        names->scenes[built_in + i] = bound[i].name;
+    names->catalogue = (struct catalogue){
+        .modes = names->modes,
+        .mode_count = (uint32_t)mode_count,
+        .scenes = names->scenes,
+        .scene_count = (uint32_t)(built_in + count),
+        .settings = settings,
+        .setting_count = sizeof settings / sizeof settings[0],
+    };
+    return true;
+}
+
+void study_names_finish(struct study_names *names)
+{
+    free(names->modes);
+    free(names->parameters);
+    free(names->scenes);
+    *names = (struct study_names){0};
+}

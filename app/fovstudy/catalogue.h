@@ -1,0 +1,41 @@
+// What protocols may name in this program: the renderer's modes, the scenes, and settings of rendering.
+//
+// Use: study_names_init with the bound scenes -> names.catalogue for protocol_load -> study_names_finish after
+// the protocol is gone.
+#ifndef APP_FOVSTUDY_CATALOGUE_H
+#define APP_FOVSTUDY_CATALOGUE_H
+
+#include "studies/protocol/catalogue.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+enum { STUDY_BOUND_SCENES = 16 };
+
+// --scene NAME=SPEC: a scene of the protocol stands for this built-in or file.
+struct bound_scene {
+    char name[64];
+    const char *spec; // borrowed
+};
+
+struct study_names {
+    struct catalogue catalogue;
+    struct catalogue_mode *modes;           // owned
+    struct catalogue_parameter *parameters; // owned, of all modes
+    const char **scenes;                    // owned array of borrowed names
+};
+
+// The setting that lets objects move; its index in the catalogue's settings.
+enum { STUDY_MOVING_OBJECTS = 0 };
+
+// "NAME=SPEC" into the list; false with a sentence.
+bool study_bind_scene(struct bound_scene *bound, size_t *count, const char *text, char *error,
+                      size_t error_size);
+// What a scene of the protocol stands for: its binding, else its own name.
+const char *study_scene_spec(const struct bound_scene *bound, size_t count, const char *name);
+
+bool study_names_init(struct study_names *names, const struct bound_scene *bound,
+                      size_t count); // false: no memory
+void study_names_finish(struct study_names *names);
+
+#endif

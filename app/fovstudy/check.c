@@ -1,0 +1,156 @@
+// `fovstudy check`: reads a protocol as `run` would and prints a participant's exact trials; no GPU, nothing
+// written.
+#include "app/fovstudy/catalogue.h"
+#include "app/fovstudy/commands.h"
+#include "app/fovstudy/options.h"
+#include "studies/engine/plan.h"
+#include "studies/store/store.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+enum option { PARTICIPANT, DB, NUMBER, SEED, SCENE, COUNTS, JSON, OPTIONS };
+
+static const struct option_spec specs[OPTIONS + 1] = {
+    [PARTICIPANT] = {"participant", "CODE", "the trials of this participant of --db, or of a new one"},
+    [DB] = {"db", "FILE", "the study file that knows the participants' numbers"},
+    [NUMBER] = {"number", "N", "the trials of participant number N, from 1 (default 1)"},
+    [SEED] = {"seed", "N", "instead of the protocol's seed"},
+    [SCENE] = {"scene", "NAME=SPEC", "as for run: a name the protocol may use; repeatable"},
+    [COUNTS] = {"counts", "N", "how often each cell got each scene and side over participants 1 to N instead"},
+    [JSON] = {"json", NULL, "print JSON"},
+    [OPTIONS] = {NULL, NULL, NULL},
+};
+
+struct request {
+    const char *protocol, *participant, *database;
+    uint64_t number, seed, counts;
+    bool has_number, has_seed, json;
+    struct bound_scene scenes[STUDY_BOUND_SCENES];
+    size_t scene_count;
+};
+
+static int set(struct request *out, int option, const char *value)
+{
+    char error[256];
+    switch (option) {
+    case OPTIONS_WORD:
+        if (out->protocol)
+            return options_wrong("check", "one protocol at a time, not also '%s'", value);
+        out->protocol = value;
+        return -1;
+    case PARTICIPANT:
+        out->participant = value;
+        return -1;
+    case DB:
+        out->database = value;
+        return -1;
+    case NUMBER:
+        out->has_number = options_uint64(value, 1, 1000000, &out->number);
+        return out->has_number ? -1
+                               : options_wrong("check", "--number '%s' is no number from 1 to 1000000", value);
+    case SEED:
+        out->has_seed = options_uint64(value, 0, INT64_MAX, &out->seed);
+        return out->has_seed ? -1 : options_wrong("check", "--seed '%s' is no number from 0 to 2^63-1", value);
+    case COUNTS:
+        return options_uint64(value, 1, 100000, &out->counts)
+                   ? -1
+                   : options_wrong("check", "--counts '%s' is no number from 1 to 100000", value);
+    case SCENE:
+        return study_bind_scene(out->scenes, &out->scene_count, value, error, sizeof error)
+                   ? -1
+                   : options_wrong("check", "%s", error);
+    default:
+        out->json = true;
+        return -1;
+    }
+}
+
+static int read_request(struct request *out, int argc, char **argv)
+{
+    struct options options;
+    *out = (struct request){.number = 1};
+    options_start(&options, argc, argv, "check", specs);
+    for (int i = options_next(&options); i != OPTIONS_DONE; i = options_next(&options)) {
+        if (i == OPTIONS_HELP) {
+            options_help(
+                stdout, "check PROTOCOL [--participant CODE --db FILE | --number N] [--json]",
+                "Checks a protocol and prints the trials that a participant would get, in their order.", specs);
+            return EXIT_DONE;
+        }
+        if (i == OPTIONS_ERROR)
+            return EXIT_USAGE;
+        int status = set(out, i, options.value);
+        if (status >= 0)
+            return status;
+    }
+    if (!out->protocol)
+        return options_wrong("check", "which protocol? name its file");
+    if (out->participant && !out->database && !out->has_number)
+        return options_wrong("check",
+                             "a participant's code says nothing without --db FILE; or give --number N");
+    return -1;
+}
+
+// The number that the study file gives this participant.
+static bool look_up(struct request *request)
+{
+    struct store_error error;
+    int64_t number = 0;
+    struct store *store =
+        store_open(&(struct store_desc){.path = request->database, .access = STORE_READ}, &error);
+    if (!store) {
+        fprintf(stderr, "fovstudy: %s\n", error.text);
+        return false;
+    }
+    int64_t wanted = request->has_number ? (int64_t)request->number : 0;
+    bool found = store_participant_number(store, request->participant, wanted, &number, &error) == STORE_OK;
+    if (!found)
+        fprintf(stderr, "fovstudy: %s\n", error.text);
+    store_close(store, &error);
+    request->number = (uint64_t)number;
+    return found;
+}
+
+static int print(const struct request *request, const struct protocol *protocol)
+{
+    uint64_t seed = request->has_seed ? request->seed : protocol->seed;
+    struct plan *plan = plan_create(protocol, seed, (uint32_t)(request->number - 1));
+    char *text = NULL;
+    if (request->counts)
+        text = request->json ? plan_counts_json(protocol, seed, 0, (uint32_t)request->counts)
+                             : plan_counts_text(protocol, seed, 0, (uint32_t)request->counts);
+    else if (plan)
+        text = request->json ? plan_table_json(plan) : plan_table_text(plan);
+    if (!plan || !text)
+        fprintf(stderr, "fovstudy: out of memory\n");
+    else
+        fputs(text, stdout);
+    int status = plan && text ? EXIT_DONE : EXIT_FAILED;
+    free(text);
+    plan_destroy(plan);
+    return status;
+}
+
+int command_check(int argc, char **argv)
+{
+    struct request request;
+    struct study_names names;
+    char error[PROTOCOL_ERROR];
+    int status = read_request(&request, argc, argv);
+    if (status >= 0)
+        return status;
+    if (!study_names_init(&names, request.scenes, request.scene_count)) {
+        fprintf(stderr, "fovstudy: out of memory\n");
+        return EXIT_FAILED;
+    }
+    struct protocol *protocol = protocol_load(request.protocol, &names.catalogue, error, sizeof error);
+    status = EXIT_FAILED;
+    if (!protocol)
+        fprintf(stderr, "fovstudy: %s\n", error);
+    else if (!request.participant || !request.database || look_up(&request))
+        status = print(&request, protocol);
+    protocol_destroy(protocol);
+    study_names_finish(&names);
+    return status;
+}

@@ -1,0 +1,169 @@
+#include "app/fovstudy/run_options.h"
+
+#include "app/fovstudy/options.h"
+#include "stimuli/viewing.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum option {
+    DB,
+    PARTICIPANT,
+    SEED,
+    NUMBER,
+    DISPLAY,
+    SIZE,
+    FOV,
+    REFRESH,
+    GAZE,
+    OBSERVER,
+    DEVICE,
+    SCENE,
+    ATTRIBUTE,
+    EVENTS,
+    UNBLIND,
+    OPTIONS
+};
+
+static const struct option_spec specs[OPTIONS + 1] = {
+    [DB] = {"db", "FILE", "the study file; made where there is none"},
+    [PARTICIPANT] = {"participant", "CODE", "a code for the participant, never a name"},
+    [SEED] = {"seed", "N", "instead of the protocol's seed"},
+    [NUMBER] = {"number", "N", "the participant's number, from 1; else the first free one"},
+    [DISPLAY] = {"display", "D", "window (default), monitor:N, headless, or none: nothing is drawn"},
+    [SIZE] = {"size", "WxH", "pixels of each eye"},
+    [FOV] = {"fov", "DEG", "vertical field of view of each eye, default 100"},
+    [REFRESH] = {"refresh", "HZ", "rate of the headless clock, default 90"},
+    [GAZE] = {"gaze", "G", "mouse (default in a window) or sim (default headless)"},
+    [OBSERVER] = {"observer", "sim[:..]", "a simulated participant: sim:name=value,... as below"},
+    [DEVICE] = {"device", "NAME", "part of a GPU's name"},
+    [SCENE] = {"scene", "NAME=SPEC", "a scene of the protocol is this file or built-in scene; repeatable"},
+    [ATTRIBUTE] = {"attribute", "k=v", "what the protocol asks about the participant; repeatable"},
+    [EVENTS] = {"events", "FILE|-", "one JSON object a line on what happens"},
+    [UNBLIND] = {"unblind", NULL, "name the options on the terminal (logged)"},
+    [OPTIONS] = {NULL, NULL, NULL},
+};
+
+static const char about[] =
+    "Runs a session and records it. Keys of the participant: Space switches, Left or 1 chooses A,\n"
+    "Right or 2 chooses B, numbers and arrows mark a rating, Enter confirms, P pauses, Escape ends.\n"
+    "\n"
+    "A simulated observer (--observer sim:name=value,...) has threshold, slope, lapse, side_bias,\n"
+    "toggles_mean, dwell_s, dwell_spread, rating_mean, rating_sd, rating_drop, view_s, answer_s, and\n"
+    "errors=FILE. With --display none it answers from the errors that an earlier session measured and\n"
+    "left in the study file, else from that file: lines of SCENE,ERROR,MODE[:p=v,...].";
+
+static int wrong_value(enum option option, const char *value, const char *want)
+{
+    return options_wrong("run", "--%s '%s' is not right: %s", specs[option].name, value, want);
+}
+
+static int set_numbers(struct run_options *out, enum option option, const char *value)
+{
+    switch (option) {
+    case SEED:
+        out->has_seed = options_uint64(value, 0, INT64_MAX, &out->seed);
+        return out->has_seed ? -1 : wrong_value(option, value, "a whole number from 0 to 2^63-1");
+    case NUMBER:
+        out->has_number = options_uint64(value, 1, 1000000, &out->number);
+        return out->has_number ? -1 : wrong_value(option, value, "a whole number from 1 to 1000000");
+    case SIZE:
+        return options_size(value, &out->width, &out->height)
+                   ? -1
+                   : wrong_value(option, value, "WIDTHxHEIGHT, each from 16 to 16384");
+    case FOV:
+        return options_double(value, 1.0, 170.0, &out->fov_deg)
+                   ? -1
+                   : wrong_value(option, value, "degrees, 1 to 170");
+    default:
+        return options_double(value, 1.0, 1000.0, &out->refresh_hz)
+                   ? -1
+                   : wrong_value(option, value, "1 to 1000 Hz");
+    }
+}
+
+static int set_lists(struct run_options *out, enum option option, const char *value)
+{
+    char error[256];
+    if (option == SCENE)
+        return study_bind_scene(out->scenes, &out->scene_count, value, error, sizeof error)
+                   ? -1
+                   : options_wrong("run", "%s", error);
+    if (out->attribute_count == RUN_ATTRIBUTES || !strchr(value, '='))
+        return wrong_value(option, value, "NAME=VALUE, as the protocol's participant section names them");
+    out->attributes[out->attribute_count++] = value;
+    return -1;
+}
+
+static int set(struct run_options *out, int option, const char *value)
+{
+    switch (option) {
+    case OPTIONS_WORD:
+        if (out->protocol)
+            return options_wrong("run", "one protocol at a time, not also '%s'", value);
+        out->protocol = value;
+        return -1;
+    case DB:
+        out->database = value;
+        return -1;
+    case PARTICIPANT:
+        out->participant = value;
+        return -1;
+    case DISPLAY:
+        out->display = value;
+        return -1;
+    case GAZE:
+        out->gaze = value;
+        return -1;
+    case OBSERVER:
+        out->observer = value;
+        return -1;
+    case DEVICE:
+        out->device = value;
+        return -1;
+    case EVENTS:
+        out->events = value;
+        return -1;
+    case UNBLIND:
+        out->unblind = true;
+        return -1;
+    case SCENE:
+    case ATTRIBUTE:
+        return set_lists(out, (enum option)option, value);
+    default:
+        return set_numbers(out, (enum option)option, value);
+    }
+}
+
+static int check(const struct run_options *out)
+{
+    if (!out->protocol)
+        return options_wrong("run", "which protocol? name its file");
+    if (!out->database)
+        return options_wrong("run", "where to? give --db FILE");
+    if (!out->participant || !*out->participant)
+        return options_wrong("run", "who takes part? give --participant CODE");
+    bool blind = strcmp(out->display, "headless") == 0 || strcmp(out->display, "none") == 0;
+    if (blind && !out->observer)
+        return options_wrong("run", "nobody can answer with --display %s; give --observer sim", out->display);
+    return -1;
+}
+
+int run_options_read(struct run_options *out, int argc, char **argv)
+{
+    struct options options;
+    *out = (struct run_options){.display = "window", .fov_deg = VIEWING_DEFAULT_FOV_DEG};
+    options_start(&options, argc, argv, "run", specs);
+    for (int i = options_next(&options); i != OPTIONS_DONE; i = options_next(&options)) {
+        if (i == OPTIONS_HELP) {
+            options_help(stdout, "run PROTOCOL --db FILE --participant CODE [options]", about, specs);
+            return EXIT_DONE;
+        }
+        if (i == OPTIONS_ERROR)
+            return EXIT_USAGE;
+        int status = set(out, i, options.value);
+        if (status >= 0)
+            return status;
+    }
+    return check(out);
+}

@@ -1,0 +1,221 @@
+#include "app/fovstudy/json.h"
+#include "app/fovstudy/run_study.h"
+#include "app/session/record.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool run_rows_open(struct run_rows *rows, const struct run_options *options, const struct run_study *study,
+                   char *error, size_t error_size)
+{
+    struct store_error why;
+    int64_t number = 0;
+    *rows = (struct run_rows){0};
+    rows->store = store_open(&(struct store_desc){.path = options->database, .access = STORE_CREATE}, &why);
+    int64_t wanted = options->has_number ? (int64_t)options->number : 0;
+    if (!rows->store ||
+        store_participant_number(rows->store, options->participant, wanted, &number, &why) != STORE_OK) {
+        snprintf(error, error_size, "%s", why.text);
+        return false;
+    }
+    uint64_t seed = options->has_seed ? options->seed : study->protocol->seed;
+    rows->plan = plan_create(study->protocol, seed, (uint32_t)(number - 1));
+    if (!rows->plan) {
+        snprintf(error, error_size, "out of memory");
+        return false;
+    }
+    rows->ids.condition_ids = calloc(rows->plan->condition_count + 1, sizeof *rows->ids.condition_ids);
+    rows->ids.trial_ids = calloc(rows->plan->trial_count + 1, sizeof *rows->ids.trial_ids);
+    if (rows->ids.condition_ids && rows->ids.trial_ids)
+        return true;
+    snprintf(error, error_size, "out of memory");
+    return false;
+}
+
+// JSON of how the session was started, beyond the columns of its own.
+static char *settings_json(const struct run_options *options, const struct run_study *study,
+                           const struct run_view *view)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    if (!out)
+        return NULL;
+    fprintf(out, "{\"gaze\":");
+    json_string(out, view->gaze_name);
+    fprintf(out, ",\"ipd_m\":%g,\"unblind\":%s", VIEWING_DEFAULT_IPD_M, options->unblind ? "true" : "false");
+    if (options->observer) {
+        const struct observer_parameters *o = &study->observer;
+        fprintf(out,
+                ",\"observer\":{\"threshold\":%.17g,\"slope\":%.17g,\"lapse\":%.17g,\"side_bias\":%.17g,"
+                "\"toggles_mean\":%.17g,\"dwell_s\":%.17g,\"dwell_spread\":%.17g,\"rating_mean\":%.17g,"
+                "\"rating_sd\":%.17g,\"rating_drop\":%.17g,\"view_s\":%.17g,\"answer_s\":%.17g}",
+                o->threshold, o->slope, o->lapse, o->side_bias, o->toggles_mean, o->dwell_s, o->dwell_spread,
+                o->rating_mean, o->rating_sd, o->rating_drop, o->view_s, o->answer_s);
+    }
+    fprintf(out, ",\"scenes\":{");
+    for (uint32_t i = 0; i < study->protocol->scene_count; i++) {
+        fprintf(out, "%s", i ? "," : "");
+        json_string(out, study->protocol->scenes[i]);
+        fprintf(out, ":");
+        json_string(out, study_scene_spec(options->scenes, options->scene_count, study->protocol->scenes[i]));
+    }
+    fprintf(out, "}}");
+    return fclose(out) == 0 ? text : NULL;
+}
+
+static enum store_slot stored_slot(enum plan_slot slot)
+{
+    return slot == PLAN_SLOT_A ? STORE_A : slot == PLAN_SLOT_B ? STORE_B : STORE_NO_SLOT;
+}
+
+static void fill_trials(const struct plan *plan, struct store_condition *conditions, struct store_trial *trials)
+{
+    for (uint32_t i = 0; i < plan->condition_count; i++)
+        conditions[i] = (struct store_condition){plan->conditions[i].mode, plan->conditions[i].parameters};
+    for (uint32_t i = 0; i < plan->trial_count; i++) {
+        const struct plan_trial *trial = &plan->trials[i];
+        trials[i] = (struct store_trial){
+            .ordinal = trial->ordinal,
+            .block = plan->protocol->blocks[trial->block].name,
+            .kind = protocol_kind_name(trial->kind),
+            .scene = trial->scene,
+            .settings = trial->settings,
+            .factors = trial->factors,
+            .option_a = trial->option[0],
+            .option_b = trial->option[1],
+            .test_slot = stored_slot(trial->test_slot),
+            .first_shown = stored_slot(trial->first_shown),
+            .fixation = trial->fixation,
+            .seed = trial->seed,
+        };
+    }
+}
+
+static void read_boot_id(char *out, size_t size)
+{
+    FILE *file = fopen("/proc/sys/kernel/random/boot_id", "r");
+    if (!file || !fgets(out, (int)size, file))
+        out[0] = '\0';
+    out[strcspn(out, "\n")] = '\0';
+    if (file)
+        fclose(file);
+}
+
+static struct store_session describe(const struct run_options *options, const struct run_study *study,
+                                     const struct run_view *view, const struct run_rows *rows)
+{
+    const struct renderer_device *device = view->renderer ? renderer_device(view->renderer) : NULL;
+    struct display *display = view->display;
+    bool simulated_clock = !display || display->simulated_clock;
+    return (struct store_session){
+        .protocol = {study->protocol->name, study->protocol->sha256_hex, study->protocol->text},
+        .participant = {.code = options->participant,
+                        .kind = options->observer ? "simulated" : "person",
+                        .attributes = study->attributes,
+                        .number = (int64_t)rows->plan->number + 1},
+        .segment = {.mono_origin_ns = rows->origin_ns,
+                    .clock = simulated_clock ? "simulated" : "monotonic",
+                    .app_version = FOVSTUDY_VERSION,
+                    .reason = "start"},
+        .seed = rows->plan->seed,
+        .device = device ? device->name : NULL,
+        .driver = device ? device->driver : NULL,
+        .display = options->display,
+        .refresh_hz = display ? display->refresh_hz : 0.0,
+        .width_px = display ? display->width : 0,
+        .height_px = display ? display->height : 0,
+        .fov_deg = display ? options->fov_deg : 0.0,
+        .condition_count = rows->plan->condition_count,
+        .trial_count = rows->plan->trial_count,
+    };
+}
+
+static bool create_session(struct run_rows *rows, struct store_session *session, char *error, size_t error_size)
+{
+    struct store_error why;
+    char now[RECORD_TIME], boot_id[64];
+    struct store_condition *conditions = calloc(rows->plan->condition_count + 1, sizeof *conditions);
+    struct store_trial *trials = calloc(rows->plan->trial_count + 1, sizeof *trials);
+    bool done = false;
+    if (!conditions || !trials) {
+        snprintf(error, error_size, "out of memory");
+        goto end;
+    }
+    fill_trials(rows->plan, conditions, trials);
+    record_time_utc(now);
+    read_boot_id(boot_id, sizeof boot_id);
+    session->started_at = session->segment.started_at = now;
+    // A simulated clock starts at 0 in every run, whichever computer.
+    session->segment.boot_id = strcmp(session->segment.clock, "monotonic") == 0 && boot_id[0] ? boot_id : NULL;
+    session->conditions = conditions;
+    session->trials = trials;
+    done = store_create_session(rows->store, session, &rows->ids, &why) == STORE_OK;
+    if (!done)
+        snprintf(error, error_size, "%s", why.text);
+end:
+    free(conditions);
+    free(trials);
+    return done;
+}
+
+bool run_rows_conditions(struct run_rows *rows, char *error, size_t error_size)
+{
+    struct store_error why;
+    for (uint32_t i = 0; i < rows->plan->condition_count; i++) {
+        struct store_condition condition = {rows->plan->conditions[i].mode,
+                                            rows->plan->conditions[i].parameters};
+        if (store_add_condition(rows->store, &condition, &rows->ids.condition_ids[i], &why) != STORE_OK) {
+            snprintf(error, error_size, "%s", why.text);
+            return false;
+        }
+    }
+    return true;
+}
+
+bool run_rows_create(struct run_rows *rows, const struct run_options *options, const struct run_study *study,
+                     const struct run_view *view, char *error, size_t error_size)
+{
+    if (view->display && !view->display->simulated_clock)
+        rows->origin_ns = display_now_ns(view->display);
+    char *settings = settings_json(options, study, view);
+    if (!settings) {
+        snprintf(error, error_size, "out of memory");
+        return false;
+    }
+    struct store_session session = describe(options, study, view, rows);
+    session.settings = settings;
+    bool done = create_session(rows, &session, error, error_size);
+    free(settings);
+    return done;
+}
+
+bool run_rows_reference(struct run_rows *rows, const struct run_study *study, char *error, size_t error_size)
+{
+    struct store_error why;
+    char parameters[PLAN_JSON];
+    const struct protocol *protocol = study->protocol;
+    const struct protocol_option *option = &protocol->options[protocol->reference];
+    struct store_condition condition = {protocol->catalogue->modes[option->mode].name, parameters};
+    if (!protocol_option_json(protocol, option, parameters, sizeof parameters)) {
+        snprintf(error, error_size, "the reference's parameters are too long");
+        return false;
+    }
+    if (store_add_condition(rows->store, &condition, &rows->reference_id, &why) == STORE_OK)
+        return true;
+    snprintf(error, error_size, "%s", why.text);
+    return false;
+}
+
+bool run_rows_finish(struct run_rows *rows, char *error, size_t error_size)
+{
+    struct store_error why;
+    bool done = store_close(rows->store, &why) == STORE_OK;
+    if (!done)
+        snprintf(error, error_size, "%s", why.text);
+    plan_destroy(rows->plan);
+    free(rows->ids.condition_ids);
+    free(rows->ids.trial_ids);
+    return done;
+}

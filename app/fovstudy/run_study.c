@@ -1,0 +1,86 @@
+#include "app/fovstudy/run_study.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+// Appends to a JSON object under construction; false where it is full.
+static bool append(char *json, size_t size, const char *name, const char *value)
+{
+    size_t used = strlen(json);
+    int wrote = snprintf(json + used, size - used, "%s\"%s\":%s", used > 1 ? "," : "", name, value);
+    return wrote > 0 && (size_t)wrote < size - used - 1;
+}
+
+static bool add_attribute(struct run_study *study, const char *text, bool *seen, char *error, size_t error_size)
+{
+    char name[PROTOCOL_NAME], value[1024];
+    size_t length = strcspn(text, "=");
+    snprintf(name, sizeof name, "%.*s", (int)length, text);
+    const struct protocol_attribute *attribute = protocol_attribute_find(study->protocol, name);
+    if (!attribute) {
+        snprintf(error, error_size, "the protocol asks for no attribute '%s'; see its participant section",
+                 name);
+        return false;
+    }
+    size_t index = (size_t)(attribute - study->protocol->attributes);
+    if (seen[index]) {
+        snprintf(error, error_size, "attribute '%s' is given twice", name);
+        return false;
+    }
+    seen[index] = true;
+    if (!protocol_attribute_json(attribute, text + length + 1, value, sizeof value, error, error_size))
+        return false;
+    if (append(study->attributes, sizeof study->attributes, name, value))
+        return true;
+    snprintf(error, error_size, "the attributes are too long");
+    return false;
+}
+
+static bool read_attributes(struct run_study *study, const struct run_options *options, char *error,
+                            size_t error_size)
+{
+    bool seen[PROTOCOL_ATTRIBUTES] = {false};
+    strcpy(study->attributes, "{");
+    for (size_t i = 0; i < options->attribute_count; i++)
+        if (!add_attribute(study, options->attributes[i], seen, error, error_size))
+            return false;
+    strcat(study->attributes, "}");
+    for (uint32_t i = 0; i < study->protocol->attribute_count && !options->observer; i++) {
+        const struct protocol_attribute *attribute = &study->protocol->attributes[i];
+        if (attribute->required && !seen[i]) {
+            snprintf(error, error_size, "the protocol wants to know '%s' (%s); give --attribute %s=VALUE",
+                     attribute->name, attribute->prompt, attribute->name);
+            return false;
+        }
+    }
+    return true;
+}
+
+bool run_study_init(struct run_study *study, const struct run_options *options, char *error, size_t error_size)
+{
+    *study = (struct run_study){0};
+    if (!study_names_init(&study->names, options->scenes, options->scene_count)) {
+        snprintf(error, error_size, "out of memory");
+        return false;
+    }
+    study->protocol = protocol_load(options->protocol, &study->names.catalogue, error, error_size);
+    if (!study->protocol || !read_attributes(study, options, error, error_size))
+        return false;
+    observer_defaults(&study->observer);
+    return !options->observer || observer_parse(options->observer, &study->observer, error, error_size);
+}
+
+void run_study_finish(struct run_study *study)
+{
+    protocol_destroy(study->protocol);
+    study_names_finish(&study->names);
+}
+
+void run_reference(const struct protocol *protocol, struct mode_choice *out)
+{
+    const struct protocol_option *option = &protocol->options[protocol->reference];
+    *out = (struct mode_choice){.mode = mode_find(protocol->catalogue->modes[option->mode].name)};
+    for (uint32_t i = 0; out->mode && i < out->mode->parameter_count; i++)
+        out->values[i] = option->values[i];
+}
