@@ -1,0 +1,202 @@
+#include "analysis/report/choices.h"
+
+#include "analysis/stats/quantile.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct filling {
+    struct choices *choices;
+    struct sample *sample;
+    size_t file;
+};
+
+static void set_levels(struct choice_cell *cell, const struct sample *sample)
+{
+    for (size_t i = 0; i < sample->factor_count && cell->level_count < CHOICE_LEVELS; i++) {
+        const struct sample_factor *factor = &sample->factors[i];
+        if (strcmp(factor->factors, cell->factors) == 0)
+            cell->levels[cell->level_count++] =
+                (struct choice_level){factor->key, factor->value, factor->number};
+    }
+}
+
+static const char *make_label(const struct choice_cell *cell, struct sample *sample)
+{
+    char label[512] = "";
+    for (size_t i = 0; i < cell->level_count; i++) {
+        size_t used = strlen(label);
+        snprintf(label + used, sizeof label - used, "%s%s %s", i ? ", " : "", cell->levels[i].factor,
+                 cell->levels[i].value);
+    }
+    if (cell->level_count == 0)
+        snprintf(label, sizeof label, "%s or %s",
+                 cell->test == SAMPLE_NONE ? "?" : sample->conditions[cell->test].label,
+                 cell->reference == SAMPLE_NONE ? "?" : sample->conditions[cell->reference].label);
+    return sample_keep(sample, label);
+}
+
+static struct choice_cell *find_cell(struct filling *f, const struct store_trial_row *row)
+{
+    struct choices *c = f->choices;
+    size_t test = sample_find_condition(f->sample, f->file, row->test_id);
+    size_t reference = sample_find_condition(f->sample, f->file, row->reference_id);
+    for (size_t i = 0; i < c->cell_count; i++) {
+        struct choice_cell *cell = &c->cells[i];
+        if (cell->test == test && cell->reference == reference && strcmp(cell->block, row->block) == 0 &&
+            strcmp(cell->factors, row->factors) == 0)
+            return cell;
+    }
+    struct choice_cell cell = {.block = sample_keep(f->sample, row->block),
+                               .factors = sample_keep(f->sample, row->factors),
+                               .test = test,
+                               .reference = reference};
+    if (!cell.block || !cell.factors || !sample_grow(&c->cells, c->cell_count, sizeof c->cells[0]))
+        return NULL;
+    set_levels(&cell, f->sample);
+    cell.label = make_label(&cell, f->sample);
+    if (!cell.label)
+        return NULL;
+    c->cells[c->cell_count] = cell;
+    return &c->cells[c->cell_count++];
+}
+
+static bool add_answer(struct choice_cell *cell, const struct store_trial_row *row, size_t person)
+{
+    if (!sample_grow(&cell->person, cell->answers, sizeof cell->person[0]) ||
+        !sample_grow(&cell->toggle, cell->answers, sizeof cell->toggle[0]))
+        return false;
+    if (!isnan(row->reaction_s)) {
+        if (!sample_grow(&cell->reaction_s, cell->reactions, sizeof cell->reaction_s[0]))
+            return false;
+        cell->reaction_s[cell->reactions++] = row->reaction_s;
+    }
+    bool known = false;
+    for (size_t i = 0; i < cell->answers && !known; i++)
+        known = cell->person[i] == person;
+    cell->persons += !known;
+    cell->person[cell->answers] = person;
+    cell->toggle[cell->answers++] = (double)row->toggles;
+    cell->equal += row->chosen == '=';
+    cell->n += row->chosen != '=';
+    cell->chosen += row->chosen == 't';
+    return true;
+}
+
+static bool add_trial(void *user, const struct store_trial_row *row)
+{
+    struct filling *f = user;
+    struct choices *c = f->choices;
+    size_t session = sample_find_session(f->sample, f->file, row->session_id);
+    if (row->choice_id == 0 || session == SAMPLE_NONE)
+        return true;
+    if (strcmp(row->kind, "toggle") != 0 && strcmp(row->kind, "sequential") != 0) {
+        c->other_kinds++;
+        return true;
+    }
+    if (strcmp(row->status, "done") != 0) {
+        c->not_done++;
+        return true;
+    }
+    if (sample_trial_excluded(f->sample, f->file, row->id)) {
+        c->excluded++;
+        return true;
+    }
+    if (row->chosen == '?') {
+        c->no_test_slot++;
+        return true;
+    }
+    struct choice_cell *cell = find_cell(f, row);
+    if (!cell || !add_answer(cell, row, f->sample->sessions[session].person))
+        return false;
+    c->answers++;
+    c->chosen_first += row->chosen_first;
+    c->chosen_a += row->chosen_a;
+    return true;
+}
+
+// Largest level first, as the papers print them; words in alphabetical order.
+static int by_levels(const void *x, const void *y)
+{
+    const struct choice_cell *a = x, *b = y;
+    int order = strcmp(a->block, b->block);
+    for (size_t i = 0; order == 0 && i < a->level_count && i < b->level_count; i++) {
+        double p = a->levels[i].number, q = b->levels[i].number;
+        if (isnan(p) || isnan(q))
+            order = strcmp(a->levels[i].value, b->levels[i].value);
+        else
+            order = (q > p) - (q < p);
+    }
+    if (order == 0)
+        order = strcmp(a->label, b->label);
+    if (order == 0)
+        order = (a->test > b->test) - (a->test < b->test);
+    return order ? order : (a->reference > b->reference) - (a->reference < b->reference);
+}
+
+static void finish_cell(struct choice_cell *cell, double conf)
+{
+    cell->pooled = cell->n > cell->persons;
+    cell->test_of = stat_binomial_test(cell->chosen, cell->n, 0.5, conf, STAT_TWO_SIDED);
+    cell->toggles = stat_moments(cell->toggle, cell->answers);
+    stat_sort(cell->reaction_s, cell->reactions);
+    cell->reaction_median_s = stat_quantile(cell->reaction_s, cell->reactions, 0.5);
+}
+
+static bool finish(struct choices *c)
+{
+    size_t total = 0, toggles = 0, reactions = 0;
+    for (size_t i = 0; i < c->cell_count; i++)
+        total += c->cells[i].answers;
+    double *values = malloc((2 * total + 1) * sizeof *values);
+    if (!values)
+        return false;
+    for (size_t i = 0; i < c->cell_count; i++) {
+        struct choice_cell *cell = &c->cells[i];
+        finish_cell(cell, c->conf);
+        c->pooled = c->pooled || cell->pooled;
+        for (size_t j = 0; j < cell->answers; j++)
+            values[toggles++] = cell->toggle[j];
+        for (size_t j = 0; j < cell->reactions; j++)
+            values[total + reactions++] = cell->reaction_s[j];
+    }
+    c->toggles = stat_moments(values, toggles);
+    stat_sort(values + total, reactions);
+    c->reaction_median_s = stat_quantile(values + total, reactions, 0.5);
+    free(values);
+    if (c->cell_count > 1)
+        qsort(c->cells, c->cell_count, sizeof c->cells[0], by_levels);
+    return true;
+}
+
+bool choices_load(struct choices *out, struct sample *sample, double conf, char *error, size_t error_size)
+{
+    *out = (struct choices){.conf = conf};
+    bool ok = true;
+    snprintf(error, error_size, "not enough memory");
+    for (size_t i = 0; ok && i < sample->file_count; i++) {
+        struct filling f = {out, sample, i};
+        ok = store_read_trials(sample->files[i], add_trial, &f);
+        if (!ok && store_reader_error(sample->files[i])[0])
+            snprintf(error, error_size, "%s", store_reader_error(sample->files[i]));
+    }
+    if (ok && finish(out)) {
+        error[0] = '\0';
+        return true;
+    }
+    choices_free(out);
+    return false;
+}
+
+void choices_free(struct choices *choices)
+{
+    for (size_t i = 0; i < choices->cell_count; i++) {
+        free(choices->cells[i].person);
+        free(choices->cells[i].toggle);
+        free(choices->cells[i].reaction_s);
+    }
+    free(choices->cells);
+    *choices = (struct choices){0};
+}

@@ -1,0 +1,54 @@
+// A figure: gnuplot as a process draws it as SVG, which is then made fit to stand inside an HTML page.
+//
+// Use: figure_begin(), fprintf() plain numbers and figure_word() texts into `data`, constant commands into
+// `script`, figure_end(). The script runs in a private folder and reads the file "data"; texts of a study reach
+// gnuplot only through that file, as quoted words, never as commands. No shell is involved.
+// Does not: choose colours or sizes beyond the canvas (figure_* files do).
+#ifndef ANALYSIS_REPORT_FIGURE_H
+#define ANALYSIS_REPORT_FIGURE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+
+struct figure {
+    FILE *script, *data;
+    char folder[64];
+};
+
+// What the page knows of a figure.
+struct figure_text {
+    const char *id;          // unique in the page, letters, digits and '-' only; every id inside begins with it
+    const char *title;       // for people who do not see it
+    const char *description; // what it shows, with its numbers or where they stand
+    const char *css_class;
+};
+
+enum { FIGURE_ERROR_SIZE = 512 };
+
+// Colours that stay apart for colour-blind readers and in gray print; contrast of text at least 4.5 to 1.
+#define FIGURE_ORANGE "#e8912d" // the test option, as in Franke 2021, Figure 7
+#define FIGURE_GREEN "#cfe6d2"  // the null region, same
+#define FIGURE_GREEN_EDGE "#4d8f5b"
+#define FIGURE_BLUE "#2f6da8"
+#define FIGURE_INK "#1f2430"
+#define FIGURE_PALE "#9aa1ad"
+
+// False with a sentence. The canvas in pixels is also the SVG's view box.
+bool figure_begin(struct figure *figure, int width, int height, int font_px, char *error, size_t error_size);
+
+// A quoted word of the data file: what gnuplot could read as more than text is replaced.
+void figure_word(FILE *data, const char *text);
+
+// Runs gnuplot and removes the folder. *out_svg is freed by the caller. False with a sentence.
+bool figure_end(struct figure *figure, const struct figure_text *text, char **out_svg, char *error,
+                size_t error_size);
+
+// Removes the folder without drawing.
+void figure_abandon(struct figure *figure);
+
+// The SVG text of gnuplot as an element of a page: no prolog, no titles of its own, ids prefixed. NULL: not an
+// SVG, or memory.
+char *figure_embeddable(const char *svg, const struct figure_text *text);
+
+#endif

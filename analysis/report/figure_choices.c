@@ -1,0 +1,114 @@
+// Franke et al. 2021, "Time-Warped Foveated Rendering for Virtual Reality Headsets", Figure 7, with each cell's
+// own null region where the paper draws one for all.
+#include "analysis/report/figures.h"
+#include "analysis/report/level.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+enum { CROWDED = 18 }; // bars beyond which numbers in them no longer fit
+
+static const double group_gap = 0.5; // in bar slots
+
+static void write_bar(FILE *data, const struct choice_cell *cell, size_t index, double x, bool narrow)
+{
+    const struct stat_binomial *b = &cell->test_of;
+    double n = (double)cell->n;
+    double low = fmax(0, 100 * ((double)b->null_region.low - 0.5) / n);
+    double high = fmin(100, 100 * ((double)b->null_region.high + 0.5) / n);
+    char word[96];
+    fprintf(data, "%.3f %.6f %.6f %.6f ", x, 100 * b->estimate, low, high);
+    snprintf(word, sizeof word, narrow ? "%.0f" : "%.0f %%", 100 * b->estimate);
+    figure_word(data, word);
+    snprintf(word, sizeof word, "%" PRId64 "/%" PRId64, cell->chosen, cell->n);
+    fputc(' ', data);
+    figure_word(data, word);
+    if (cell->level_count)
+        level_words(&cell->levels[cell->level_count - 1], !narrow, word);
+    else
+        snprintf(word, sizeof word, "%zu", index + 1);
+    fputc(' ', data);
+    figure_word(data, word);
+    fputc('\n', data);
+}
+
+static void group_name(const struct choice_cell *cell, char out[256])
+{
+    level_join(cell, 0, cell->level_count ? cell->level_count - 1 : 0, out);
+}
+
+// Cells of one group share the block and all levels but the last.
+static bool same_group(const struct choice_cell *a, const struct choice_cell *b)
+{
+    char x[256], y[256];
+    group_name(a, x);
+    group_name(b, y);
+    return strcmp(a->block, b->block) == 0 && strcmp(x, y) == 0;
+}
+
+// Returns where the last bar stands; bars are block 0 of the data file, groups block 1.
+static double write_data(FILE *data, const struct choices *c, bool narrow)
+{
+    double x = 0;
+    for (size_t i = 0; i < c->cell_count; i++) {
+        if (i)
+            x += same_group(&c->cells[i - 1], &c->cells[i]) ? 1 : 1 + group_gap;
+        if (c->cells[i].n) // a cell of nothing but "equal" has no percent
+            write_bar(data, &c->cells[i], i, x, narrow);
+    }
+    fputs("\n\n", data);
+    double last = x, start = 0;
+    x = 0;
+    for (size_t i = 0; i < c->cell_count; i++) {
+        bool ends = i + 1 == c->cell_count || !same_group(&c->cells[i], &c->cells[i + 1]);
+        if (ends) {
+            char name[256];
+            group_name(&c->cells[i], name);
+            fprintf(data, "%.3f ", (start + x) / 2);
+            figure_word(data, name);
+            fputc('\n', data);
+        }
+        x += ends ? 1 + group_gap : 1;
+        start = ends ? x : start;
+    }
+    return last;
+}
+
+bool figure_choices(const struct choices *choices, const struct figure_desc *desc, char **out_svg, char *error,
+                    size_t error_size)
+{
+    struct figure figure;
+    int font = desc->narrow ? 12 : 15;
+    if (!figure_begin(&figure, desc->narrow ? FIGURE_NARROW_PX : FIGURE_WIDE_PX, desc->narrow ? 330 : 430, font,
+                      error, error_size))
+        return false;
+    double last = write_data(figure.data, choices, desc->narrow);
+    bool numbers = choices->cell_count <= CROWDED && !(desc->narrow && choices->cell_count > 12);
+    fprintf(
+        figure.script,
+        "set xrange [-0.6:%.3f]\nset yrange [-21:101]\nunset xtics\n"
+        "set ytics 0,25,100 format '%%g %%%%' offset 0.5,0\n"
+        "set lmargin %d\nset rmargin 0.5\nset tmargin 0.5\nset bmargin 0\n"
+        "do for [y=0:100:25] { set arrow from graph 0, first y to graph 1, first y nohead back lw 0.6 "
+        "lc rgb (y == 0 ? '" FIGURE_INK "' : '#dfe2e8') }\n"
+        "set arrow from graph 0, first 50 to graph 1, first 50 nohead front lw 1.2 dt (6,4) lc rgb '" FIGURE_INK
+        "'\n",
+        last + 0.6, 6);
+    fputs("plot 'data' index 0 using 1:3:($1-0.5):($1+0.5):3:4 with boxxyerror fs solid noborder fc rgb "
+          "'" FIGURE_GREEN "', '' index 0 using 1:2:(0.6) with boxes fs solid noborder fc rgb '" FIGURE_ORANGE
+          "', '' index 0 using ($1-0.5):3:(1):(0) with vectors nohead lw 1.5 lc rgb '" FIGURE_GREEN_EDGE
+          "', '' index 0 using ($1-0.5):4:(1):(0) with vectors nohead lw 1.5 lc rgb '" FIGURE_GREEN_EDGE "'",
+          figure.script);
+    fprintf(figure.script,
+            ", '' index 0 using 1:(-5):7 with labels tc rgb '" FIGURE_INK "'"
+            ", '' index 1 using 1:(-14):2 with labels font ',%d' tc rgb '" FIGURE_INK "'",
+            font + 1);
+    if (numbers)
+        fprintf(figure.script,
+                ", '' index 0 using 1:(%s):5 with labels tc rgb '" FIGURE_INK "'"
+                ", '' index 0 using 1:(4):6 with labels font ',%d' tc rgb '" FIGURE_INK "'",
+                desc->narrow ? "11" : "10", font - 2);
+    fputc('\n', figure.script);
+    return figure_end(&figure, desc->text, out_svg, error, error_size);
+}

@@ -1,0 +1,37 @@
+// The report's figures. Each is drawn for two widths, so that its letters stay readable on a wide and on a
+// narrow page; the page shows one of them.
+#ifndef ANALYSIS_REPORT_FIGURES_H
+#define ANALYSIS_REPORT_FIGURES_H
+
+#include "analysis/report/choices.h"
+#include "analysis/report/figure.h"
+#include "analysis/report/frames.h"
+#include "analysis/report/ratings.h"
+
+enum { FIGURE_WIDE_PX = 860, FIGURE_NARROW_PX = 360 };
+
+struct figure_desc {
+    bool narrow;
+    const struct figure_text *text;
+};
+
+// All return false with a sentence; *out_svg is freed by the caller.
+
+// Franke 2021, Figure 7: bars of the percent of choices for the test option, in groups of the first factor's
+// levels, over each cell's null region for its own n. The region is drawn half an answer wider than its
+// outermost counts, so that a bar ends clearly inside or outside.
+bool figure_choices(const struct choices *choices, const struct figure_desc *desc, char **out_svg, char *error,
+                    size_t error_size);
+
+// Each person's two ratings as a line, in two panels by what came first, with the means.
+bool figure_ratings(const struct sample *sample, const struct rating_question *question,
+                    const struct figure_desc *desc, char **out_svg, char *error, size_t error_size);
+
+// Median, 95th and 99th percentile of the stimulus frames' GPU time (CPU time where no GPU time is known).
+bool figure_frames(const struct sample *sample, const struct frames *frames, const struct figure_desc *desc,
+                   char **out_svg, char *error, size_t error_size);
+
+// How many groups figure_frames() would draw: 0 where there is nothing to draw.
+size_t figure_frames_rows(const struct frames *frames);
+
+#endif

@@ -1,0 +1,13 @@
+// Factor levels in words for people: "ε 0.2", "fovea 17°".
+#ifndef ANALYSIS_REPORT_LEVEL_H
+#define ANALYSIS_REPORT_LEVEL_H
+
+#include "analysis/report/choices.h"
+
+// With the factor's name, or the value with its unit alone. Cut where it does not fit.
+void level_words(const struct choice_level *level, bool named, char out[96]);
+
+// Levels `from` up to `to` (not included), joined by commas.
+void level_join(const struct choice_cell *cell, size_t from, size_t to, char out[256]);
+
+#endif

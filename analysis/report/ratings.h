@@ -1,0 +1,43 @@
+// Two ratings per person, in two orders: the comparison of Franke 2021, section 8.2.
+//
+// Of each question, every session's first two ratings of different conditions make a pair. Sessions are grouped
+// by which condition came first. First ratings are compared between the two groups by Welch's t-test (what
+// people say before they have learned to see a difference); second minus first is tested within each group by a
+// paired t-test. The two groups are never pooled: their differences have opposite meanings and would cancel.
+#ifndef ANALYSIS_REPORT_RATINGS_H
+#define ANALYSIS_REPORT_RATINGS_H
+
+#include "analysis/report/sample.h"
+#include "analysis/stats/moments.h"
+#include "analysis/stats/ttest.h"
+
+struct rating_group {
+    size_t first_condition, second_condition;
+    size_t n; // pairs
+    double *first, *second;
+    struct stat_moments first_of, second_of;
+    struct stat_ttest change; // second minus first, paired; NaN where all changes are equal or n < 2
+};
+
+struct rating_question {
+    const char *question;
+    double scale_min, scale_max;
+    size_t group_count;
+    struct rating_group *groups;
+    bool compared; // exactly two groups: `first_between` is group 0 minus group 1
+    struct stat_ttest first_between;
+    int64_t unpaired; // sessions with a rating and no pair
+};
+
+struct ratings {
+    double conf;
+    size_t question_count;
+    struct rating_question *questions;
+    int64_t used;                                   // ratings in pairs
+    int64_t not_done, excluded, no_condition, more; // ratings left out
+};
+
+bool ratings_load(struct ratings *out, struct sample *sample, double conf, char *error, size_t error_size);
+void ratings_free(struct ratings *ratings);
+
+#endif

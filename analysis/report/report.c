@@ -1,0 +1,177 @@
+#include "analysis/report/report.h"
+
+#include "analysis/report/figures.h"
+#include "analysis/report/html.h"
+#include "analysis/report/sections.h"
+#include "report_css.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+const char *report_label(const struct report *r, size_t condition)
+{
+    return condition == SAMPLE_NONE ? "gray or text" : r->sample->conditions[condition].label;
+}
+
+bool report_outside(const struct choice_cell *cell)
+{
+    return cell->n &&
+           (cell->chosen < cell->test_of.null_region.low || cell->chosen > cell->test_of.null_region.high);
+}
+
+void report_figure(const struct report *r, const struct figure_pair *figure, const char *caption)
+{
+    if (figure->wide && figure->narrow)
+        fprintf(r->out, "<figure>\n%s%s<figcaption>%s</figcaption>\n</figure>\n", figure->wide, figure->narrow,
+                caption);
+}
+
+static const char *title_of(const struct report *r)
+{
+    return r->sample->sessions[0].protocol_name;
+}
+
+static void write_head(const struct report *r)
+{
+    FILE *out = r->out;
+    bool simulated = r->sample->simulated;
+    fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+          "<link rel=\"icon\" href=\"data:,\">\n<title>",
+          out);
+    html_printf(out, "%s%s: study report", simulated ? "SIMULATED DATA \u2013 " : "", title_of(r));
+    fputs("</title>\n<style>\n", out);
+    fwrite(report_css, 1, sizeof report_css, out);
+    fprintf(out, "</style>\n</head>\n<body%s>\n", simulated ? " class=\"branded\"" : "");
+    if (simulated)
+        fputs("<div class=\"brand\" role=\"note\">SIMULATED DATA: no person took part</div>\n", out);
+    fputs("<main>\n<header>\n<h1>", out);
+    html_printf(out, "%s%s: study report", simulated ? "SIMULATED DATA \u2013 " : "", title_of(r));
+    fputs("</h1>\n</header>\n", out);
+}
+
+static bool write_page(const struct report *r, char *error, size_t error_size)
+{
+    write_head(r);
+    report_summary(r);
+    report_sample(r);
+    report_methods(r);
+    report_choices(r);
+    report_toggles(r);
+    report_ratings(r);
+    report_frames(r);
+    if (!report_quality(r, error, error_size))
+        return false;
+    report_definitions(r);
+    fputs("<footer>Made by fovstats " FOVSTUDY_VERSION ".</footer>\n</main>\n</body>\n</html>\n", r->out);
+    return true;
+}
+
+// --- figures ---
+
+static bool draw_choices(struct report *r, char *error, size_t error_size)
+{
+    for (int narrow = 0; r->choices.cell_count && narrow < 2; narrow++) {
+        struct figure_text text = {
+            narrow ? "choices-n" : "choices-w", "Percent of choices for the test option",
+            "Bars per cell over the region of the null hypothesis; the table below has every "
+            "number.",
+            narrow ? "narrow" : "wide"};
+        struct figure_desc desc = {narrow, &text};
+        char **svg = narrow ? &r->choices_figure.narrow : &r->choices_figure.wide;
+        if (!figure_choices(&r->choices, &desc, svg, error, error_size))
+            return false;
+    }
+    return true;
+}
+
+static bool draw_ratings(struct report *r, char *error, size_t error_size)
+{
+    for (size_t i = 0; i < r->ratings.question_count && i < REPORT_QUESTIONS; i++)
+        for (int narrow = 0; r->ratings.questions[i].group_count && narrow < 2; narrow++) {
+            char id[32];
+            snprintf(id, sizeof id, "ratings-%zu-%c", i, narrow ? 'n' : 'w');
+            struct figure_text text = {
+                id, "First and second rating of each person",
+                "One line per person, in one panel per order, with means; the table below has "
+                "the tests.",
+                narrow ? "narrow" : "wide"};
+            struct figure_desc desc = {narrow, &text};
+            char **svg = narrow ? &r->ratings_figures[i].narrow : &r->ratings_figures[i].wide;
+            if (!figure_ratings(r->sample, &r->ratings.questions[i], &desc, svg, error, error_size))
+                return false;
+        }
+    return true;
+}
+
+static bool draw_frames(struct report *r, char *error, size_t error_size)
+{
+    for (int narrow = 0; figure_frames_rows(&r->frames) && narrow < 2; narrow++) {
+        struct figure_text text = {narrow ? "frames-n" : "frames-w", "Frame times per option",
+                                   "Median, 95th and 99th percentile; the table below has every number.",
+                                   narrow ? "narrow" : "wide"};
+        struct figure_desc desc = {narrow, &text};
+        char **svg = narrow ? &r->frames_figure.narrow : &r->frames_figure.wide;
+        if (!figure_frames(r->sample, &r->frames, &desc, svg, error, error_size))
+            return false;
+    }
+    return true;
+}
+
+// --- the file ---
+
+static bool write_to(struct report *r, const char *path, const char *temporary, char *error, size_t error_size)
+{
+    r->out = fopen(temporary, "w");
+    if (!r->out) {
+        snprintf(error, error_size, "%s: cannot be written: %s", path, strerror(errno));
+        return false;
+    }
+    bool ok = write_page(r, error, error_size);
+    bool written = fflush(r->out) == 0 && !ferror(r->out) && fsync(fileno(r->out)) == 0;
+    int reason = errno;
+    written = fclose(r->out) == 0 && written;
+    if (ok && written && rename(temporary, path) == 0)
+        return true;
+    if (ok)
+        snprintf(error, error_size, "%s: cannot be written: %s", path, strerror(written ? errno : reason));
+    unlink(temporary);
+    return false;
+}
+
+static void free_figures(struct report *r)
+{
+    free(r->choices_figure.wide);
+    free(r->choices_figure.narrow);
+    free(r->frames_figure.wide);
+    free(r->frames_figure.narrow);
+    for (int i = 0; i < REPORT_QUESTIONS; i++) {
+        free(r->ratings_figures[i].wide);
+        free(r->ratings_figures[i].narrow);
+    }
+}
+
+bool report_write(struct sample *sample, double conf, const char *path, char *error, size_t error_size)
+{
+    struct report r = {.sample = sample, .conf = conf};
+    size_t size = strlen(path) + 32;
+    char *temporary = malloc(size);
+    bool ok = temporary != NULL;
+    if (ok)
+        snprintf(temporary, size, "%s.part-%ld", path, (long)getpid());
+    else
+        snprintf(error, error_size, "not enough memory");
+    ok = ok && choices_load(&r.choices, sample, conf, error, error_size) &&
+         ratings_load(&r.ratings, sample, conf, error, error_size) &&
+         frames_load(&r.frames, sample, error, error_size) && draw_choices(&r, error, error_size) &&
+         draw_ratings(&r, error, error_size) && draw_frames(&r, error, error_size) &&
+         write_to(&r, path, temporary, error, error_size);
+    free_figures(&r);
+    choices_free(&r.choices);
+    ratings_free(&r.ratings);
+    frames_free(&r.frames);
+    free(temporary);
+    return ok;
+}

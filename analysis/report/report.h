@@ -1,0 +1,12 @@
+// One HTML file that tells a study's results: no script, nothing loaded from elsewhere, readable on a phone and
+// on paper. Simulated data is branded in the title, at the top of the page and on every printed page.
+#ifndef ANALYSIS_REPORT_REPORT_H
+#define ANALYSIS_REPORT_REPORT_H
+
+#include "analysis/report/sample.h"
+
+// Writes FILE whole or not at all. What a study lacks (no choice, no rating, no frame) is said in its section.
+// False with a sentence, also where gnuplot is missing.
+bool report_write(struct sample *sample, double conf, const char *path, char *error, size_t error_size);
+
+#endif

@@ -1,0 +1,223 @@
+// Summary, choices and toggles.
+#include "analysis/report/html.h"
+#include "analysis/report/level.h"
+#include "analysis/report/sections.h"
+
+#include <inttypes.h>
+#include <math.h>
+
+static void cell_words(const struct choice_cell *cell, char out[256])
+{
+    if (cell->level_count)
+        level_join(cell, 0, cell->level_count, out);
+    else
+        snprintf(out, 256, "%s", cell->label);
+}
+
+static void list_outside(const struct report *r, bool for_test)
+{
+    bool first = true;
+    for (size_t i = 0; i < r->choices.cell_count; i++) {
+        const struct choice_cell *cell = &r->choices.cells[i];
+        if (!report_outside(cell) || (2 * cell->chosen > cell->n) != for_test)
+            continue;
+        char words[256];
+        cell_words(cell, words);
+        html_printf(r->out, "%s%s (%" PRId64 " of %" PRId64 ")", first ? "" : "; ", words, cell->chosen,
+                    cell->n);
+        first = false;
+    }
+}
+
+void report_summary(const struct report *r)
+{
+    int64_t cells = 0, test = 0, reference = 0;
+    for (size_t i = 0; i < r->choices.cell_count; i++) {
+        const struct choice_cell *cell = &r->choices.cells[i];
+        cells += cell->n > 0;
+        test += report_outside(cell) && 2 * cell->chosen > cell->n;
+        reference += report_outside(cell) && 2 * cell->chosen < cell->n;
+    }
+    if (cells == 0)
+        return;
+    fputs("<p class=\"lead\">", r->out);
+    html_printf(r->out,
+                "Of %" PRId64 " cells, %" PRId64 " %s outside the %g\u00a0%% region of the null hypothesis",
+                cells, test + reference, test + reference == 1 ? "lies" : "lie", 100 * r->conf);
+    if (reference) {
+        fputs("; the reference was preferred for ", r->out);
+        list_outside(r, false);
+    }
+    if (test) {
+        fputs("; the test option was preferred for ", r->out);
+        list_outside(r, true);
+    }
+    fputs(". ", r->out);
+    if (cells > test + reference)
+        fputs("The other cells show no clear preference, which does not show that the options look the same. ",
+              r->out);
+    fputs("No correction for the number of cells is made.</p>\n", r->out);
+}
+
+static void choices_caption(const struct report *r, char *out, size_t size)
+{
+    snprintf(
+        out, size,
+        "Percent of choices for the test option <span class=\"key\" style=\"background:#e8912d\"></span>. "
+        "<span class=\"key\" style=\"background:#cfe6d2\"></span> The %g&nbsp;%% region of the null hypothesis "
+        "(both options chosen equally often) for each cell\u2019s own n, drawn half an answer wider on both "
+        "sides; "
+        "a bar that ends outside it shows a preference. Dashed: 50&nbsp;%%. In the bars: percent, and answers "
+        "for "
+        "the test option of all answers.%s",
+        100 * r->conf,
+        r->choices.cells[0].level_count ? "" : " Numbers under the bars are those of the table\u2019s rows.");
+}
+
+static void choice_row(const struct report *r, const struct choice_cell *cell, size_t index)
+{
+    FILE *out = r->out;
+    const struct stat_binomial *b = &cell->test_of;
+    char words[256], p[24];
+    cell_words(cell, words);
+    html_p_value(p, b->p_value);
+    fprintf(out, "<tr%s>", report_outside(cell) ? " class=\"outside\"" : "");
+    if (!cell->level_count)
+        html_cell(out, "td", "%zu", index + 1);
+    html_cell(out, "th scope=\"row\" class=\"word\"", "%s%s", words, cell->pooled ? " *" : "");
+    html_cell(out, "td", "%" PRId64, cell->chosen);
+    html_cell(out, "td", "%" PRId64, cell->n);
+    if (cell->n) {
+        html_cell(out, "td class=\"share\"", "%.1f\u00a0%%", 100 * b->estimate);
+        html_cell(out, "td", "%.1f to %.1f\u00a0%%", 100 * b->ci.low, 100 * b->ci.high);
+        html_cell(out, "td", "%" PRId64 " to %" PRId64, b->null_region.low, b->null_region.high);
+        html_cell(out, "td", "%s", p);
+    } else {
+        for (int i = 0; i < 4; i++)
+            html_cell(out, "td", "none");
+    }
+    html_cell(out, "td class=\"word\"", "%s",
+              report_outside(cell) ? (2 * cell->chosen > cell->n ? "test" : "reference")
+                                   : "no clear preference");
+    fputs("</tr>\n", out);
+}
+
+static void choices_table(const struct report *r)
+{
+    FILE *out = r->out;
+    const struct choices *c = &r->choices;
+    bool numbered = c->cells[0].level_count == 0;
+    fputs("<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"Choices per "
+          "cell\"><table>\n<caption>Choices per "
+          "cell, exact two-sided binomial test against 50&nbsp;%</caption>\n<thead><tr>",
+          out);
+    fputs(numbered ? "<th scope=\"col\">no.</th>" : "", out);
+    fputs("<th scope=\"col\" class=\"word\">cell</th><th scope=\"col\">test</th><th scope=\"col\">n</th><th "
+          "scope=\"col\">"
+          "share</th>",
+          out);
+    fprintf(
+        out,
+        "<th scope=\"col\">%g&nbsp;%% interval</th><th scope=\"col\">null region</th><th scope=\"col\">p</th>",
+        100 * c->conf);
+    fputs("<th scope=\"col\" class=\"word\">preferred</th></tr></thead>\n<tbody>\n", out);
+    for (size_t i = 0; i < c->cell_count; i++)
+        choice_row(r, &c->cells[i], i);
+    fputs("</tbody></table></div>\n", out);
+}
+
+static void choices_notes(const struct report *r)
+{
+    const struct choices *c = &r->choices;
+    if (c->pooled)
+        fputs("<p class=\"note\"><strong>* Pooled:</strong> these cells hold several answers of one person. "
+              "The test takes "
+              "all answers as independent, so its p and interval are too optimistic.</p>\n",
+              r->out);
+    for (size_t i = 0; i < c->cell_count; i++)
+        if (c->cells[i].equal) {
+            fputs("<p>", r->out);
+            html_printf(r->out, "%s: %" PRId64 " answers \u201cequal\u201d are not part of n.",
+                        c->cells[i].label, c->cells[i].equal);
+            fputs("</p>\n", r->out);
+        }
+}
+
+static void options_sentence(const struct report *r)
+{
+    const struct choice_cell *first = &r->choices.cells[0];
+    bool same = true;
+    for (size_t i = 1; i < r->choices.cell_count; i++)
+        same = same && r->choices.cells[i].reference == first->reference;
+    fputs("<p>", r->out);
+    if (same && first->test != SAMPLE_NONE && first->reference != SAMPLE_NONE)
+        html_printf(r->out, "Test option: %s. Reference: %s.", r->sample->conditions[first->test].mode,
+                    report_label(r, first->reference));
+    fputs("</p>\n", r->out);
+}
+
+void report_choices(const struct report *r)
+{
+    fputs("<h2>Choices</h2>\n", r->out);
+    if (r->choices.cell_count == 0) {
+        fputs("<p class=\"note\">No choice was recorded that counts.</p>\n", r->out);
+        return;
+    }
+    char caption[1024];
+    choices_caption(r, caption, sizeof caption);
+    options_sentence(r);
+    report_figure(r, &r->choices_figure, caption);
+    choices_table(r);
+    choices_notes(r);
+}
+
+static void number_cell(FILE *out, double value, const char *unit)
+{
+    if (isnan(value))
+        html_cell(out, "td", "\u2013");
+    else
+        html_cell(out, "td", "%.2f%s", value, unit);
+}
+
+static void toggles_table(const struct report *r)
+{
+    FILE *out = r->out;
+    fputs("<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"Toggles per "
+          "cell\"><table>\n<caption>Switches before "
+          "the answer, and reaction time</caption>\n<thead><tr><th scope=\"col\" class=\"word\">cell</th><th "
+          "scope=\"col\">"
+          "answers</th><th scope=\"col\">toggles M</th><th scope=\"col\">SD</th><th scope=\"col\">reaction "
+          "time, median"
+          "</th></tr></thead>\n<tbody>\n",
+          out);
+    for (size_t i = 0; i < r->choices.cell_count; i++) {
+        const struct choice_cell *cell = &r->choices.cells[i];
+        char words[256];
+        cell_words(cell, words);
+        fputs("<tr>", out);
+        html_cell(out, "th scope=\"row\" class=\"word\"", "%s", words);
+        html_cell(out, "td", "%zu", cell->answers);
+        html_cell(out, "td", "%.2f", cell->toggles.mean);
+        number_cell(out, cell->toggles.sd, "");
+        number_cell(out, cell->reaction_median_s, "\u00a0s");
+        fputs("</tr>\n", out);
+    }
+    fputs("</tbody></table></div>\n", out);
+}
+
+void report_toggles(const struct report *r)
+{
+    const struct choices *c = &r->choices;
+    if (c->cell_count == 0)
+        return;
+    fputs("<h2>Toggles before answering</h2>\n<p>", r->out);
+    html_printf(r->out,
+                "Over all %" PRId64
+                " answers: %.2f switches before a decision (SD %.2f). The option shown first was chosen "
+                "in %" PRId64 " answers (%.0f\u00a0%%), the one in slot a in %" PRId64 " (%.0f\u00a0%%).",
+                c->answers, c->toggles.mean, c->toggles.sd, c->chosen_first,
+                100 * (double)c->chosen_first / (double)c->answers, c->chosen_a,
+                100 * (double)c->chosen_a / (double)c->answers);
+    fputs("</p>\n", r->out);
+    toggles_table(r);
+}

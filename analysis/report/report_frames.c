@@ -1,0 +1,73 @@
+#include "analysis/report/html.h"
+#include "analysis/report/sections.h"
+
+#include <inttypes.h>
+#include <math.h>
+
+static void times_cells(FILE *out, const struct frame_times *t)
+{
+    const double values[] = {t->median, t->p95, t->p99};
+    for (int i = 0; i < 3; i++) {
+        if (t->count)
+            html_cell(out, "td", "%.2f", values[i]);
+        else
+            html_cell(out, "td", "\u2013");
+    }
+}
+
+static void group_row(const struct report *r, const struct frame_group *g)
+{
+    FILE *out = r->out;
+    fputs("<tr>", out);
+    html_cell(out, "th scope=\"row\" class=\"word\"", "%s", g->phase);
+    html_cell(out, "td class=\"word\"", "%s", report_label(r, g->condition));
+    html_cell(out, "td", "%" PRId64, g->frames);
+    html_cell(out, "td", "%" PRId64, g->late);
+    times_cells(out, &g->gpu);
+    times_cells(out, &g->cpu);
+    if (g->interval.count)
+        html_cell(out, "td", "%.2f", g->interval.median);
+    else
+        html_cell(out, "td", "\u2013");
+    if (isnan(g->shaded_px_mean))
+        html_cell(out, "td", "\u2013");
+    else
+        html_cell(out, "td", "%.0f", g->shaded_px_mean);
+    fputs("</tr>\n", out);
+}
+
+void report_frames(const struct report *r)
+{
+    const struct frames *f = &r->frames;
+    FILE *out = r->out;
+    fputs("<h2>Frame times</h2>\n", out);
+    if (f->group_count == 0) {
+        fputs("<p class=\"note\">No frame was recorded.</p>\n", out);
+        return;
+    }
+    fputs("<p>", out);
+    html_printf(out, "%" PRId64 " frames, %" PRId64 " of them late (%.2f\u00a0%%).", f->frames, f->late,
+                100 * (double)f->late / (double)f->frames);
+    if (f->simulated_clock)
+        fputs(" The clock was simulated: intervals and late frames are that clock\u2019s and say nothing of "
+              "the machine.",
+              out);
+    fputs("</p>\n", out);
+    report_figure(r, &r->frames_figure,
+                  "Time per stimulus frame on the GPU (on the CPU where no GPU time is known): dot and number "
+                  "at the end, "
+                  "median; dark line to the 95th, pale line to the 99th percentile.");
+    fputs("<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"Frame "
+          "times\"><table>\n<caption>Milliseconds; "
+          "percentiles of type 7</caption>\n<thead><tr><th scope=\"col\" class=\"word\">phase</th><th "
+          "scope=\"col\" "
+          "class=\"word\">option</th><th scope=\"col\">frames</th><th scope=\"col\">late</th><th "
+          "scope=\"col\">GPU "
+          "median</th><th scope=\"col\">p95</th><th scope=\"col\">p99</th><th scope=\"col\">CPU median</th>"
+          "<th scope=\"col\">p95</th><th scope=\"col\">p99</th><th scope=\"col\">interval median</th>"
+          "<th scope=\"col\">pixels shaded, M</th></tr></thead>\n<tbody>\n",
+          out);
+    for (size_t i = 0; i < f->group_count; i++)
+        group_row(r, &f->groups[i]);
+    fputs("</tbody></table></div>\n", out);
+}

@@ -1,0 +1,199 @@
+// Data quality per session, what was left out and why, and what the words mean.
+#include "analysis/report/html.h"
+#include "analysis/report/sections.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct session_quality {
+    int64_t planned, done, invalid, samples, lost;
+};
+
+struct filling {
+    const struct report *report;
+    size_t file;
+    struct session_quality *sessions;
+};
+
+static bool add_trial(void *user, const struct store_trial_row *row)
+{
+    struct filling *f = user;
+    size_t i = sample_find_session(f->report->sample, f->file, row->session_id);
+    if (i == SAMPLE_NONE)
+        return true;
+    f->sessions[i].planned += row->repeat_of == 0;
+    f->sessions[i].done += strcmp(row->status, "done") == 0;
+    f->sessions[i].invalid += strcmp(row->status, "invalid") == 0;
+    return true;
+}
+
+static bool add_gaze(void *user, const struct store_gaze_row *row)
+{
+    struct filling *f = user;
+    size_t i = sample_find_session(f->report->sample, f->file, row->session_id);
+    if (i == SAMPLE_NONE)
+        return true;
+    f->sessions[i].samples = row->samples;
+    f->sessions[i].lost = row->invalid;
+    return true;
+}
+
+static void session_row(const struct report *r, size_t index, const struct session_quality *q)
+{
+    const struct sample_session *s = &r->sample->sessions[index];
+    FILE *out = r->out;
+    fputs("<tr>", out);
+    html_cell(out, "th scope=\"row\" class=\"word\"", "%s", r->sample->people[s->person].code);
+    html_cell(out, "td class=\"word\"", "%s", s->status);
+    html_cell(out, "td class=\"word\"", "%s", s->started_at);
+    html_cell(out, "td", "%" PRId64, s->segments);
+    html_cell(out, "td", "%" PRId64 " of %" PRId64, q->done, q->planned);
+    html_cell(out, "td", "%" PRId64, q->invalid);
+    if (q->samples)
+        html_cell(out, "td", "%" PRId64 " (%.1f\u00a0%%)", q->samples,
+                  100 * (double)q->lost / (double)q->samples);
+    else
+        html_cell(out, "td", "none");
+    fputs("</tr>\n", out);
+}
+
+static bool sessions_table(const struct report *r, char *error, size_t error_size)
+{
+    struct sample *s = r->sample;
+    struct filling f = {r, 0, calloc(s->session_count, sizeof *f.sessions)};
+    bool ok = f.sessions != NULL;
+    if (!ok)
+        snprintf(error, error_size, "not enough memory");
+    for (; ok && f.file < s->file_count; f.file++) {
+        ok = store_read_trials(s->files[f.file], add_trial, &f) &&
+             store_read_gaze_counts(s->files[f.file], add_gaze, &f);
+        if (!ok)
+            snprintf(error, error_size, "%s", store_reader_error(s->files[f.file]));
+    }
+    if (ok) {
+        fputs("<div class=\"table\" tabindex=\"0\" role=\"region\" "
+              "aria-label=\"Sessions\"><table>\n<caption>Sessions"
+              "</caption>\n<thead><tr><th scope=\"col\" class=\"word\">participant</th><th scope=\"col\" "
+              "class=\"word\">"
+              "status</th><th scope=\"col\" class=\"word\">started</th><th scope=\"col\">program runs</th>"
+              "<th scope=\"col\">trials done</th><th scope=\"col\">invalid</th><th scope=\"col\">gaze samples "
+              "(not valid)"
+              "</th></tr></thead>\n<tbody>\n",
+              r->out);
+        for (size_t i = 0; i < s->session_count; i++)
+            if (!s->sessions[i].excluded)
+                session_row(r, i, &f.sessions[i]);
+        fputs("</tbody></table></div>\n", r->out);
+    }
+    free(f.sessions);
+    return ok;
+}
+
+static void count_item(const struct report *r, int64_t count, const char *what)
+{
+    if (count)
+        fprintf(r->out, "<li>%" PRId64 " %s</li>\n", count, what);
+}
+
+static void left_out(const struct report *r)
+{
+    const struct choices *c = &r->choices;
+    const struct ratings *t = &r->ratings;
+    int64_t sessions = 0, incomplete = 0;
+    for (size_t i = 0; i < r->sample->session_count; i++) {
+        sessions += r->sample->sessions[i].excluded;
+        incomplete +=
+            !r->sample->sessions[i].excluded && strcmp(r->sample->sessions[i].status, "complete") != 0;
+    }
+    if (incomplete)
+        fprintf(r->out,
+                "<p class=\"note\">%" PRId64
+                " %s not complete; the answers given are part of every number here.</p>\n",
+                incomplete, incomplete == 1 ? "session is" : "sessions are");
+    int64_t all = sessions + c->excluded + c->not_done + c->other_kinds + c->no_test_slot + t->excluded +
+                  t->not_done + t->no_condition + t->more + (int64_t)r->sample->left_out_simulated;
+    fputs(all ? "<p>Left out of the numbers above:</p>\n<ul>\n" : "<p>Nothing was left out.</p>\n", r->out);
+    count_item(r, (int64_t)r->sample->left_out_simulated, "simulated sessions");
+    count_item(r, sessions, "excluded sessions");
+    count_item(r, c->excluded, "answers to excluded trials");
+    count_item(r, c->not_done, "answers to trials that are not done");
+    count_item(r, c->other_kinds, "answers to practice, catch, null and staircase trials");
+    count_item(r, c->no_test_slot, "answers to trials without a test option");
+    count_item(r, t->excluded, "ratings in excluded trials");
+    count_item(r, t->not_done, "ratings in trials that are not done");
+    count_item(r, t->no_condition, "ratings that belong to no option");
+    count_item(r, t->more, "ratings after a session\u2019s first two");
+    fputs(all ? "</ul>\n" : "", r->out);
+}
+
+static void exclusions_table(const struct report *r)
+{
+    FILE *out = r->out;
+    const struct sample *s = r->sample;
+    if (s->exclusion_count == 0)
+        return;
+    fputs("<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"Exclusions\"><table "
+          "class=\"wrap\">\n<caption>Exclusions; "
+          "rules of the set \u201cstricter\u201d are listed and not applied, \u201clate\u201d ones were made "
+          "after the data was seen"
+          "</caption>\n<thead><tr><th scope=\"col\" class=\"word\">participant</th><th scope=\"col\" "
+          "class=\"word\">what</th>"
+          "<th scope=\"col\" class=\"word\">rule</th><th scope=\"col\" class=\"word\">set</th><th "
+          "scope=\"col\" class=\"word\">"
+          "reason</th><th scope=\"col\" class=\"word\">by</th></tr></thead>\n<tbody>\n",
+          out);
+    for (size_t i = 0; i < s->exclusion_count; i++) {
+        const struct sample_exclusion *e = &s->exclusions[i];
+        fputs("<tr>", out);
+        html_cell(out, "th scope=\"row\" class=\"word\"", "%s", e->code);
+        if (e->trial_id)
+            html_cell(out, "td class=\"word\"", "trial %" PRId64, e->trial_id);
+        else
+            html_cell(out, "td class=\"word\"", "%s", e->session_id ? "session" : "participant");
+        html_cell(out, "td class=\"word\"", "%s", e->rule);
+        html_cell(out, "td class=\"word\"", "%s%s", e->rule_set, e->applied ? "" : " (not applied)");
+        html_cell(out, "td class=\"word\"", "%s", e->reason);
+        html_cell(out, "td class=\"word\"", "%s", e->by);
+        fputs("</tr>\n", out);
+    }
+    fputs("</tbody></table></div>\n", out);
+}
+
+bool report_quality(const struct report *r, char *error, size_t error_size)
+{
+    fputs("<h2>Quality and exclusions</h2>\n", r->out);
+    left_out(r);
+    exclusions_table(r);
+    return sessions_table(r, error, error_size);
+}
+
+void report_definitions(const struct report *r)
+{
+    static const char *const words[][2] = {
+        {"Cell", "One combination of block, factor levels and the two options compared."},
+        {"Test option, reference",
+         "The protocol\u2019s first option and the one it is compared with, whichever side they were "
+         "on."},
+        {"Share", "Answers for the test option, in percent of n. Answers \u201cequal\u201d are not part of n."},
+        {"Null region",
+         "The smallest and largest count whose two-sided p exceeds 1 minus the confidence, for the cell\u2019s "
+         "own n (6 to 16 for n = 22 at 95 %)."},
+        {"Interval", "Clopper\u2013Pearson for shares, by Student\u2019s t for means and their differences."},
+        {"p", "Two-sided binomial p: the probability of all counts no more probable than the one seen, if both "
+              "options were "
+              "chosen equally often. A large p is no evidence that options look the same."},
+        {"Toggles", "Switches between the two options before the answer."},
+        {"Reaction time", "From the moment an answer was allowed to the answer; the median per cell."},
+        {"\u03b5, fovea",
+         "Confidence threshold of the time-warped mode, and the eccentricity in degrees (a radius) up to which "
+         "it redraws every pixel."},
+        {"Late frame", "A frame shown at least one refresh after its turn."},
+        {"GPU and CPU time, interval",
+         "Time spent on a frame by each, and between the starts of successive frames."},
+    };
+    fputs("<h2>Definitions</h2>\n<dl>\n", r->out);
+    for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
+        fprintf(r->out, "<dt>%s</dt><dd>%s</dd>\n", words[i][0], words[i][1]);
+    fputs("</dl>\n", r->out);
+}

@@ -1,0 +1,224 @@
+// Study and sample, and the methods paragraph.
+#include "analysis/report/html.h"
+#include "analysis/report/sections.h"
+#include "analysis/stats/moments.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// One fact of a session as text, "" where it is not known.
+typedef void (*fact_fn)(const struct sample_session *session, char out[512]);
+
+static void fact_device(const struct sample_session *s, char out[512])
+{
+    snprintf(out, 512, "%s", s->device);
+}
+
+static void fact_driver(const struct sample_session *s, char out[512])
+{
+    snprintf(out, 512, "%s", s->driver);
+}
+
+static void fact_display(const struct sample_session *s, char out[512])
+{
+    snprintf(out, 512, "%s", s->display);
+}
+
+static void fact_rate(const struct sample_session *s, char out[512])
+{
+    if (!isnan(s->refresh_hz))
+        snprintf(out, 512, "%g Hz, %s clock", s->refresh_hz, s->simulated_clock ? "simulated" : "real");
+    else
+        snprintf(out, 512, "%s", s->simulated_clock ? "simulated clock" : "");
+}
+
+static void fact_size(const struct sample_session *s, char out[512])
+{
+    out[0] = '\0';
+    if (!isnan(s->width_px) && !isnan(s->height_px))
+        snprintf(out, 512, "%g \u00d7 %g px per eye", s->width_px, s->height_px);
+}
+
+static void fact_fov(const struct sample_session *s, char out[512])
+{
+    out[0] = '\0';
+    if (!isnan(s->fov_deg))
+        snprintf(out, 512, "%g\u00b0 vertical", s->fov_deg);
+}
+
+static void fact_seed(const struct sample_session *s, char out[512])
+{
+    snprintf(out, 512, "%" PRIu64, s->seed);
+}
+
+static void fact_version(const struct sample_session *s, char out[512])
+{
+    snprintf(out, 512, "%s", s->app_version);
+}
+
+static void fact_protocol(const struct sample_session *s, char out[512])
+{
+    snprintf(out, 512, "%s, SHA-256 %s", s->protocol_name, s->protocol_sha256);
+}
+
+static void fact_status(const struct sample_session *s, char out[512])
+{
+    snprintf(out, 512, "%s", s->status);
+}
+
+// Every distinct value, with the number of sessions where there are several.
+static void fact_row(const struct report *r, const char *name, fact_fn fact)
+{
+    const struct sample *sample = r->sample;
+    char value[512], other[512];
+    size_t distinct = 0;
+    fprintf(r->out, "<tr><th scope=\"row\">%s</th><td>", name);
+    for (size_t i = 0; i < sample->session_count; i++) {
+        fact(&sample->sessions[i], value);
+        size_t count = 0;
+        bool first = true;
+        for (size_t j = 0; j < sample->session_count; j++) {
+            fact(&sample->sessions[j], other);
+            bool same = !sample->sessions[j].excluded && strcmp(value, other) == 0;
+            count += same;
+            first = first && !(same && j < i);
+        }
+        if (sample->sessions[i].excluded || !first)
+            continue;
+        fputs(distinct++ ? "<br>" : "", r->out);
+        html_printf(r->out, "%s (%zu %s)", value[0] ? value : "not recorded", count,
+                    count == 1 ? "session" : "sessions");
+    }
+    fputs("</td></tr>\n", r->out);
+}
+
+static bool person_used(const struct sample *sample, size_t person)
+{
+    for (size_t i = 0; i < sample->session_count; i++)
+        if (!sample->sessions[i].excluded && sample->sessions[i].person == person)
+            return true;
+    return false;
+}
+
+static size_t people_used(const struct sample *sample)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < sample->person_count; i++)
+        count += person_used(sample, i);
+    return count;
+}
+
+static void words_of_attribute(const struct report *r, const char *key)
+{
+    const struct sample *s = r->sample;
+    size_t distinct = 0;
+    for (size_t i = 0; i < s->attribute_count; i++) {
+        size_t count = 0;
+        bool first = true;
+        if (strcmp(s->attributes[i].key, key) != 0 || !person_used(s, s->attributes[i].person))
+            continue;
+        for (size_t j = 0; j < s->attribute_count; j++) {
+            bool same = strcmp(s->attributes[j].key, key) == 0 && person_used(s, s->attributes[j].person) &&
+                        strcmp(s->attributes[j].value, s->attributes[i].value) == 0;
+            count += same;
+            first = first && !(same && j < i);
+        }
+        if (first)
+            html_printf(r->out, "%s%s (%zu)", distinct++ ? ", " : "", s->attributes[i].value, count);
+    }
+}
+
+// Numbers by mean, SD and range; words by how many have each.
+static void attribute_row(const struct report *r, const char *key)
+{
+    const struct sample *s = r->sample;
+    double *values = calloc(s->attribute_count, sizeof *values), low = INFINITY, high = -INFINITY;
+    size_t count = 0, words = 0;
+    for (size_t i = 0; values && i < s->attribute_count; i++) {
+        const struct sample_attribute *a = &s->attributes[i];
+        if (strcmp(a->key, key) != 0 || !person_used(s, a->person))
+            continue;
+        if (isnan(a->number)) {
+            words++;
+            continue;
+        }
+        values[count++] = a->number;
+        low = fmin(low, a->number);
+        high = fmax(high, a->number);
+    }
+    if (count + words) {
+        fputs("<tr>", r->out);
+        html_cell(r->out, "th scope=\"row\"", "%s", key);
+        fputs("<td>", r->out);
+        if (words == 0 && count > 1) {
+            struct stat_moments m = stat_moments(values, count);
+            html_printf(r->out, "M %.2f, SD %.2f, %g to %g (%zu of %zu)", m.mean, m.sd, low, high, count,
+                        people_used(s));
+        } else {
+            words_of_attribute(r, key);
+        }
+        fputs("</td></tr>\n", r->out);
+    }
+    free(values);
+}
+
+void report_sample(const struct report *r)
+{
+    const struct sample *s = r->sample;
+    size_t used = 0;
+    for (size_t i = 0; i < s->session_count; i++)
+        used += !s->sessions[i].excluded;
+    fputs("<h2>Study and sample</h2>\n<div class=\"table\"><table class=\"facts\"><tbody>\n", r->out);
+    fact_row(r, "Protocol", fact_protocol);
+    fprintf(r->out, "<tr><th scope=\"row\">%s</th><td>%zu (%zu %s)</td></tr>\n",
+            s->simulated ? "Simulated observers" : "Participants", people_used(s), used,
+            used == 1 ? "session" : "sessions");
+    for (size_t i = 0; i < s->attribute_count; i++) {
+        bool first = true;
+        for (size_t j = 0; j < i && first; j++)
+            first = strcmp(s->attributes[i].key, s->attributes[j].key) != 0;
+        if (first)
+            attribute_row(r, s->attributes[i].key);
+    }
+    fact_row(r, "Sessions", fact_status);
+    fact_row(r, "Device", fact_device);
+    fact_row(r, "Driver", fact_driver);
+    fact_row(r, "Display", fact_display);
+    fact_row(r, "Rate", fact_rate);
+    fact_row(r, "Size", fact_size);
+    fact_row(r, "Field of view", fact_fov);
+    fact_row(r, "Seed", fact_seed);
+    fact_row(r, "Program", fact_version);
+    fputs("</tbody></table></div>\n", r->out);
+}
+
+void report_methods(const struct report *r)
+{
+    fputs("<h2>Methods</h2>\n<p>", r->out);
+    html_printf(r->out,
+                "Choices were compared with an even split by the exact two-sided binomial test (method of "
+                "small p-values), "
+                "with Clopper\u2013Pearson intervals; the null region of a cell is the range of counts with p "
+                "> %.4g for that "
+                "cell\u2019s own n. ",
+                1 - r->conf);
+    fputs(r->choices.pooled ? "In cells marked * answers of one person are pooled. "
+                            : "Each person gave at most one answer per cell, so the answers within a cell are "
+                              "independent. ",
+          r->out);
+    html_printf(r->out,
+                "First ratings were compared between the two order groups by Welch\u2019s t-test, and the "
+                "second with the "
+                "first rating within each group by a paired t-test. Intervals cover %g\u00a0%%. p-values are "
+                "not corrected "
+                "for the number of tests. ",
+                100 * r->conf);
+    if (r->sample->simulated)
+        fputs("<strong>All sessions are simulated:</strong> the answers come from a model that reads image "
+              "errors, and say "
+              "nothing about people.",
+              r->out);
+    fputs("</p>\n", r->out);
+}

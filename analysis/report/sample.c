@@ -1,0 +1,167 @@
+#include "analysis/report/sample.h"
+
+#include "analysis/report/sample_private.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+// Doubles at each power of two: the caller keeps the count only.
+bool sample_grow(void *items_address, size_t count, size_t item_size)
+{
+    if (count != 0 && (count & (count - 1)) != 0)
+        return true;
+    void *items;
+    memcpy(&items, items_address, sizeof items);
+    if (count > SIZE_MAX / 2 / item_size)
+        return false;
+    items = realloc(items, (count ? 2 * count : 1) * item_size);
+    if (!items)
+        return false;
+    memcpy(items_address, &items, sizeof items);
+    return true;
+}
+
+const char *sample_keep(struct sample *sample, const char *text)
+{
+    if (!sample_grow(&sample->texts, sample->text_count, sizeof sample->texts[0]))
+        return NULL;
+    char *copy = strdup(text);
+    if (copy)
+        sample->texts[sample->text_count++] = copy;
+    return copy;
+}
+
+bool sample_keep_all(struct sample *sample, const char **texts[], size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (!(*texts[i] = sample_keep(sample, *texts[i])))
+            return false;
+    return true;
+}
+
+size_t sample_find_session(const struct sample *sample, size_t file, int64_t id)
+{
+    for (size_t i = 0; i < sample->session_count; i++)
+        if (sample->sessions[i].file == file && sample->sessions[i].id == id)
+            return sample->sessions[i].excluded ? SAMPLE_NONE : i;
+    return SAMPLE_NONE;
+}
+
+size_t sample_find_condition(const struct sample *sample, size_t file, int64_t id)
+{
+    for (size_t i = 0; i < sample->condition_id_count; i++)
+        if (sample->condition_ids[i].file == file && sample->condition_ids[i].id == id)
+            return sample->condition_ids[i].condition;
+    return SAMPLE_NONE;
+}
+
+bool sample_trial_excluded(const struct sample *sample, size_t file, int64_t trial_id)
+{
+    for (size_t i = 0; i < sample->exclusion_count; i++) {
+        const struct sample_exclusion *e = &sample->exclusions[i];
+        if (e->applied && e->file == file && e->trial_id == trial_id && trial_id != 0)
+            return true;
+    }
+    return false;
+}
+
+static bool open_files(struct sample *sample, const char *const *paths, size_t path_count, char *error,
+                       size_t error_size)
+{
+    sample->files = calloc(path_count ? path_count : 1, sizeof sample->files[0]);
+    if (!sample->files)
+        return false;
+    for (size_t i = 0; i < path_count; i++) {
+        struct stat a, b;
+        for (size_t j = 0; j < i; j++)
+            if (stat(paths[i], &a) == 0 && stat(paths[j], &b) == 0 && a.st_dev == b.st_dev &&
+                a.st_ino == b.st_ino) {
+                snprintf(error, error_size, "%s: is given twice; name each study file once", paths[i]);
+                return false;
+            }
+        sample->files[i] = store_reader_open(paths[i], error, error_size);
+        if (!sample->files[i])
+            return false;
+        sample->file_count++;
+    }
+    return true;
+}
+
+// The same sitting in two files: a copy. Codes and times together are unique within a study.
+static bool no_copies(const struct sample *sample, char *error, size_t error_size)
+{
+    for (size_t i = 0; i < sample->session_count; i++)
+        for (size_t j = 0; j < i; j++) {
+            const struct sample_session *a = &sample->sessions[i], *b = &sample->sessions[j];
+            if (a->file == b->file || a->seed != b->seed || strcmp(a->started_at, b->started_at) != 0 ||
+                strcmp(a->protocol_sha256, b->protocol_sha256) != 0 ||
+                strcmp(sample->people[a->person].code, sample->people[b->person].code) != 0)
+                continue;
+            snprintf(error, error_size,
+                     "%s: the session of participant %s is also in %s; leave one of the files out, or it "
+                     "counts twice",
+                     store_reader_path(sample->files[a->file]), sample->people[a->person].code,
+                     store_reader_path(sample->files[b->file]));
+            return false;
+        }
+    return true;
+}
+
+static bool sessions_left(const struct sample *sample, char *error, size_t error_size)
+{
+    const char *path = store_reader_path(sample->files[0]),
+               *more = sample->file_count > 1 ? " and the others" : "";
+    size_t used = 0;
+    for (size_t i = 0; i < sample->session_count; i++)
+        used += !sample->sessions[i].excluded;
+    if (used)
+        return true;
+    if (sample->session_count)
+        snprintf(error, error_size, "%s%s: every session is excluded, so there is nothing to analyse", path,
+                 more);
+    else if (sample->left_out_simulated)
+        snprintf(error, error_size,
+                 "%s%s: only simulated sessions (%zu) are in it; add --simulated to analyse them", path, more,
+                 sample->left_out_simulated);
+    else if (sample->simulated)
+        snprintf(error, error_size, "%s%s: there is no simulated session in it; leave --simulated out", path,
+                 more);
+    else
+        snprintf(error, error_size, "%s%s: the study is empty: no session was recorded", path, more);
+    return false;
+}
+
+bool sample_load(struct sample *out, const char *const *paths, size_t path_count, bool simulated, char *error,
+                 size_t error_size)
+{
+    *out = (struct sample){.simulated = simulated};
+    snprintf(error, error_size, "not enough memory");
+    if (open_files(out, paths, path_count, error, error_size) && sample_read(out, error, error_size) &&
+        no_copies(out, error, error_size) && sessions_left(out, error, error_size)) {
+        error[0] = '\0';
+        return true;
+    }
+    sample_free(out);
+    return false;
+}
+
+void sample_free(struct sample *sample)
+{
+    for (size_t i = 0; i < sample->file_count; i++)
+        store_reader_close(sample->files[i]);
+    for (size_t i = 0; i < sample->text_count; i++)
+        free(sample->texts[i]);
+    free(sample->files);
+    free(sample->sessions);
+    free(sample->people);
+    free(sample->attributes);
+    free(sample->conditions);
+    free(sample->condition_ids);
+    free(sample->parameters);
+    free(sample->factors);
+    free(sample->exclusions);
+    free(sample->texts);
+    *sample = (struct sample){0};
+}

@@ -1,0 +1,116 @@
+// Who and what is analysed: the sessions of one or more study files after leaving out simulated observers and
+// what exclusion rules took out.
+//
+// Use: sample_load(), then any of choices.h, ratings.h and frames.h, then sample_free().
+// A file given twice, and a session found in two files, are refused rather than counted twice. Exclusions of
+// the rule sets 'planned' and 'late' are applied, 'stricter' ones are only listed. Does not: change a file,
+// decide on exclusions, or draw anything. All texts are owned by the sample.
+#ifndef ANALYSIS_REPORT_SAMPLE_H
+#define ANALYSIS_REPORT_SAMPLE_H
+
+#include "studies/store/read.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define SAMPLE_NONE SIZE_MAX
+
+enum { SAMPLE_ERROR_SIZE = 640 };
+
+struct sample_session {
+    size_t file;
+    int64_t id, participant_id;
+    size_t person; // index
+    const char *status, *started_at, *ended_at;
+    uint64_t seed;
+    const char *protocol_name, *protocol_sha256;
+    const char *device, *driver, *display, *app_version; // "" where not known
+    double refresh_hz, width_px, height_px, fov_deg;     // NaN where nothing was rendered
+    bool simulated_clock;
+    int64_t segments;
+    bool excluded; // or its participant
+};
+
+struct sample_person {
+    size_t file;
+    int64_t id, number;
+    const char *code;
+};
+
+struct sample_attribute {
+    size_t person;
+    const char *key, *value;
+    double number; // NaN where the value is not a number
+};
+
+struct sample_condition {
+    const char *mode;
+    const char *parameters; // "epsilon=0.2 fovea_deg=10", "" for none
+    const char *label;      // the mode, with those parameters that differ within it in this sample
+};
+
+// A condition's number in its file, or a member of a trial's factors.
+struct sample_condition_id {
+    size_t file;
+    int64_t id;
+    size_t condition; // index
+};
+
+struct sample_parameter {
+    size_t condition;
+    const char *key, *value;
+};
+
+struct sample_factor {
+    const char *factors; // the whole JSON text, as trials carry it
+    const char *key, *value;
+    double number; // NaN where the level is not a number
+};
+
+struct sample_exclusion {
+    size_t file;
+    int64_t trial_id, session_id, participant_id;
+    const char *rule, *rule_set, *reason, *by;
+    const char *code; // of the participant; "" where the session is not part of the sample
+    bool applied;
+};
+
+struct sample {
+    bool simulated; // the sessions analysed are simulated ones
+    size_t left_out_simulated;
+    size_t file_count;
+    struct store_reader **files;
+    size_t session_count, person_count, attribute_count, condition_count, condition_id_count, parameter_count,
+        factor_count, exclusion_count;
+    struct sample_session *sessions;
+    struct sample_person *people;
+    struct sample_attribute *attributes;
+    struct sample_condition *conditions;
+    struct sample_condition_id *condition_ids;
+    struct sample_parameter *parameters;
+    struct sample_factor *factors;
+    struct sample_exclusion *exclusions;
+    char **texts;
+    size_t text_count;
+};
+
+// False with a sentence in `error`; the sample is then empty. With `simulated`, simulated sessions are
+// analysed; they are refused together with sessions of people. No session left is an error too.
+bool sample_load(struct sample *out, const char *const *paths, size_t path_count, bool simulated, char *error,
+                 size_t error_size);
+void sample_free(struct sample *sample);
+
+// Index of a session that is analysed, SAMPLE_NONE for any other.
+size_t sample_find_session(const struct sample *sample, size_t file, int64_t id);
+// Index of a condition; SAMPLE_NONE for id 0.
+size_t sample_find_condition(const struct sample *sample, size_t file, int64_t id);
+bool sample_trial_excluded(const struct sample *sample, size_t file, int64_t trial_id);
+
+// A copy owned by the sample; NULL where memory ran out.
+const char *sample_keep(struct sample *sample, const char *text);
+
+// Makes room for one more item, for all growing arrays here: false where memory ran out.
+bool sample_grow(void *items_address, size_t count, size_t item_size);
+
+#endif

@@ -1,0 +1,43 @@
+// The parts of the report, each in its file. Shared by report*.c only.
+#ifndef ANALYSIS_REPORT_SECTIONS_H
+#define ANALYSIS_REPORT_SECTIONS_H
+
+#include "analysis/report/choices.h"
+#include "analysis/report/frames.h"
+#include "analysis/report/ratings.h"
+#include "analysis/report/sample.h"
+
+#include <stdio.h>
+
+enum { REPORT_QUESTIONS = 8 }; // ratings drawn; further questions are in the tables only
+
+struct figure_pair {
+    char *wide, *narrow; // NULL where there is nothing to draw
+};
+
+struct report {
+    FILE *out;
+    struct sample *sample;
+    double conf;
+    struct choices choices;
+    struct ratings ratings;
+    struct frames frames;
+    struct figure_pair choices_figure, frames_figure, ratings_figures[REPORT_QUESTIONS];
+};
+
+void report_summary(const struct report *r);
+void report_sample(const struct report *r);
+void report_methods(const struct report *r);
+void report_choices(const struct report *r);
+void report_toggles(const struct report *r);
+void report_ratings(const struct report *r);
+void report_frames(const struct report *r);
+bool report_quality(const struct report *r, char *error, size_t error_size);
+void report_definitions(const struct report *r);
+
+// Both widths of a figure and its caption, which is HTML.
+void report_figure(const struct report *r, const struct figure_pair *figure, const char *caption);
+const char *report_label(const struct report *r, size_t condition);
+bool report_outside(const struct choice_cell *cell); // outside the null region
+
+#endif

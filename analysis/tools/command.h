@@ -1,0 +1,17 @@
+// A subcommand of fovstats: one line in main.c's table and one short file.
+#ifndef ANALYSIS_TOOLS_COMMAND_H
+#define ANALYSIS_TOOLS_COMMAND_H
+
+enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_USAGE = 2 };
+
+struct command {
+    const char *name;
+    const char *summary; // one line
+    const char *help;    // what --help prints
+    // argv[0] is the subcommand's name. Returns the exit code.
+    int (*run)(const struct command *command, int argc, char **argv);
+};
+
+extern const struct command command_binom, command_choices, command_ratings, command_frames, command_report;
+
+#endif

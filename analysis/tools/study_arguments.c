@@ -1,0 +1,79 @@
+#include "analysis/tools/study_arguments.h"
+
+#include "analysis/tools/arguments.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+
+int study_arguments_load(const struct command *command, int argc, char **argv, bool takes_output,
+                         struct study_arguments *out, struct sample *out_sample)
+{
+    *out = (struct study_arguments){.conf = 0.95};
+    const struct option options[] = {{"--simulated", OPTION_FLAG, &out->simulated},
+                                     {"--conf", OPTION_NUMBER, &out->conf},
+                                     takes_output ? (struct option){"-o", OPTION_TEXT, &out->output}
+                                                  : (struct option){"--json", OPTION_FLAG, &out->json}};
+    int count = 0,
+        code = arguments_parse(command, argc, argv, options, sizeof options / sizeof options[0], &count);
+    if (code >= 0)
+        return code;
+    if (count == 0)
+        return command_fail(command, EXIT_USAGE, "needs at least one study file; see --help");
+    if (takes_output && !out->output)
+        return command_fail(command, EXIT_USAGE, "needs -o FILE.html");
+    if (!(out->conf > 0 && 1 - out->conf > 0 && 1 - out->conf < 1))
+        return command_fail(command, EXIT_USAGE, "--conf is %g but must lie between 0 and 1, for example 0.95",
+                            out->conf);
+    char error[SAMPLE_ERROR_SIZE];
+    if (!sample_load(out_sample, (const char *const *)argv, (size_t)count, out->simulated, error, sizeof error))
+        return command_fail(command, EXIT_FAILED, "%s", error);
+    return -1;
+}
+
+static void count_used(const struct sample *sample, int64_t *sessions, int64_t *people)
+{
+    *sessions = *people = 0;
+    for (size_t i = 0; i < sample->session_count; i++) {
+        if (sample->sessions[i].excluded)
+            continue;
+        bool known = false;
+        for (size_t j = 0; j < i && !known; j++)
+            known = !sample->sessions[j].excluded && sample->sessions[j].person == sample->sessions[i].person;
+        *people += !known;
+        ++*sessions;
+    }
+}
+
+void study_title(const struct sample *sample, const char *what)
+{
+    int64_t sessions, people;
+    count_used(sample, &sessions, &people);
+    printf("%s%s: %" PRId64 " %s, %" PRId64 " %s\n\n", sample->simulated ? "SIMULATED DATA. " : "", what,
+           people,
+           sample->simulated ? (people == 1 ? "simulated observer" : "simulated observers")
+                             : (people == 1 ? "participant" : "participants"),
+           sessions, sessions == 1 ? "session" : "sessions");
+}
+
+void study_title_json(struct json *json, const struct sample *sample)
+{
+    int64_t sessions, people;
+    count_used(sample, &sessions, &people);
+    json_bool(json, "simulated", sample->simulated);
+    json_integer(json, "participants", people);
+    json_integer(json, "sessions", sessions);
+    json_integer(json, "sessions_excluded", (int64_t)sample->session_count - sessions);
+    json_integer(json, "sessions_left_out_simulated", (int64_t)sample->left_out_simulated);
+}
+
+void study_notes(const struct sample *sample)
+{
+    if (sample->left_out_simulated)
+        printf("Left out: %zu simulated sessions (--simulated analyses them).\n", sample->left_out_simulated);
+    for (size_t i = 0; i < sample->session_count; i++) {
+        const struct sample_session *s = &sample->sessions[i];
+        if (s->excluded)
+            printf("Left out: session %" PRId64 " of participant %s (excluded).\n", s->id,
+                   sample->people[s->person].code);
+    }
+}

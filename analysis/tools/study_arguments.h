@@ -1,0 +1,26 @@
+// What every subcommand that reads study files takes: DB..., --simulated, --conf, --json.
+#ifndef ANALYSIS_TOOLS_STUDY_ARGUMENTS_H
+#define ANALYSIS_TOOLS_STUDY_ARGUMENTS_H
+
+#include "analysis/report/sample.h"
+#include "analysis/tools/command.h"
+#include "analysis/tools/json.h"
+
+struct study_arguments {
+    bool simulated, json;
+    double conf;
+    const char *output; // -o; NULL where not given
+};
+
+// Parses and loads. Returns -1 with a sample that the caller frees, else the exit code.
+int study_arguments_load(const struct command *command, int argc, char **argv, bool takes_output,
+                         struct study_arguments *out, struct sample *out_sample);
+
+// The heading of the text output: files, sessions, participants; SIMULATED DATA where it is.
+void study_title(const struct sample *sample, const char *what);
+// The same as the first members of a JSON object.
+void study_title_json(struct json *json, const struct sample *sample);
+// Sentences on what was left out before any row was counted.
+void study_notes(const struct sample *sample);
+
+#endif
