@@ -7,13 +7,18 @@
 
 // The panel keeps to the middle of the view, where headset lenses are sharp; in a small image it may take more
 // of the picture, since there the text would not fit otherwise.
-#define PANEL_HALF_X_DEG 26.0
-#define PANEL_HALF_Y_DEG 24.0
-#define PANEL_LEAST_PX 300.0
+#define PANEL_HALF_X_DEG 30.0
+#define PANEL_HALF_Y_DEG 28.0
+#define PANEL_LEAST_PX 440.0
 #define PANEL_MOST 0.94 // of the image, less what vergence shifts the panel sideways
+// Before a second page letters may shrink to 1.35 degrees and 9 px, in tiny images to 6 px.
+#define CAP_LEAST_SHARE 0.75
 #define CAP_LEAST_PX 6.0
+#define CAP_SMALL_PX 9.0
+#define LINES_LEAST 40.0
+#define PARAGRAPH_GAP 0.3 // lines
 #define CAP_SHRINK 0.85
-static const double style_size[TEXT_STYLES] = {[TEXT_TITLE] = 1.35, [TEXT_BODY] = 1.0, [TEXT_HINT] = 0.85};
+static const double style_size[TEXT_STYLES] = {[TEXT_TITLE] = 1.35, [TEXT_BODY] = 1.0, [TEXT_HINT] = 0.9};
 
 // The flow of lines down the pages.
 struct flow {
@@ -102,6 +107,8 @@ static void add_text(struct flow *flow, const char *text, enum text_style style)
             length -= take;
         }
         text = *line == '\n' ? line + 1 : line;
+        if (*text)
+            flow->y += PARAGRAPH_GAP * font_line_px(font);
     }
 }
 
@@ -227,13 +234,13 @@ bool text_layout_init(struct text_layout *layout, const struct text_view *view,
     };
     double size = screen->size > 0.0 ? screen->size : 1.0;
     double cap = size * fmax(per_tan_y * tan(TEXT_CAP_DEG * radians), TEXT_CAP_MIN_PX);
-    double least = fmin(cap, fmax(CAP_LEAST_PX, per_tan_y * tan(0.8 * TEXT_CAP_DEG * radians)));
+    double small = fmin(fmax(flow.room_y / LINES_LEAST, CAP_LEAST_PX), CAP_SMALL_PX);
+    double least = fmin(cap, fmax(small, per_tan_y * tan(CAP_LEAST_SHARE * TEXT_CAP_DEG * radians)));
     layout->runs = calloc(TEXT_RUNS, sizeof *layout->runs);
     bool done = layout->runs && create_fonts(layout, cap);
     if (done)
         lay_out(&flow, screen);
-    // Smaller letters before a second page, down to 1.2 degrees or what can be read.
-    while (done && layout->page_count > 1 && cap > least) {
+    while (done && (layout->page_count > 1 || layout->height[0] > flow.room_y) && cap > least) {
         cap = fmax(cap * CAP_SHRINK, least);
         done = create_fonts(layout, cap);
         if (done)

@@ -44,7 +44,12 @@ static bool read_line(const char *file, int number, char *text, struct line *out
         snprintf(error, error_size, "%s:%d: %s", file, number, why);
         return false;
     }
-    snprintf(out->scene, sizeof out->scene, "%s", scene);
+    if (strlen(scene) >= sizeof out->scene) {
+        snprintf(error, error_size, "%s:%d: the scene's name is longer than %zu bytes", file, number,
+                 sizeof out->scene - 1);
+        return false;
+    }
+    strcpy(out->scene, scene);
     out->mode = choice.mode;
     return mode_parameters_json(&choice, out->parameters, sizeof out->parameters);
 }

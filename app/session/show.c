@@ -111,7 +111,8 @@ static bool draw_option(struct show *show, const struct machine_view *view, cons
         snprintf(error, error_size, "the GPU could not draw frame %llu", (unsigned long long)show->number);
         return false;
     }
-    if (show->measure && stage_reference(show->desc->stage) && measure_due(show->measure, view) &&
+    bool is_reference = show->desc->ids->condition_ids[view->condition] == show->desc->reference_id;
+    if (show->measure && !is_reference && measure_due(show->measure, view) &&
         !measure_take(show->measure, view, scene_index(show, view->trial_index), option,
                       stage_reference(show->desc->stage), &frame)) {
         snprintf(error, error_size, "the image error of frame %llu could not be measured",

@@ -1,0 +1,297 @@
+// `fovstudy render`: walks a scene's camera path in one mode and writes pictures.
+#include "app/fovstudy/commands.h"
+#include "app/fovstudy/options.h"
+#include "app/fovstudy/png.h"
+#include "app/gaze/script.h"
+#include "renderer/renderer.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+enum gaze_kind { GAZE_AT, GAZE_SCRIPT };
+
+struct request {
+    struct mode_choice choice;
+    const char *scene;
+    const char *out; // NULL: no pictures
+    const char *device;
+    uint64_t frames;
+    uint32_t width, height;
+    enum gaze_kind gaze;
+    double gaze_x_deg, gaze_y_deg;
+    double fov_deg;
+    double start_s;
+    bool explain, all, still, rest, redraw_map, times;
+};
+
+enum {
+    OPTION_MODE,
+    OPTION_SCENE,
+    OPTION_OUT,
+    OPTION_FRAMES,
+    OPTION_SIZE,
+    OPTION_GAZE,
+    OPTION_FOV,
+    OPTION_START,
+    OPTION_STILL,
+    OPTION_REST,
+    OPTION_ALL,
+    OPTION_REDRAW_MAP,
+    OPTION_TIMES,
+    OPTION_EXPLAIN,
+    OPTION_DEVICE
+};
+
+static const struct option_spec specs[] = {
+    [OPTION_MODE] = {"mode", "MODE[:p=v,...]", "rendering mode, see 'fovstudy modes'"},
+    [OPTION_SCENE] = {"scene", "NAME|FILE", "a built-in scene, see 'fovstudy scenes', or a .gltf or .glb file"},
+    [OPTION_OUT] = {"out", "DIR", "folder for the pictures, made where missing: NNNN-left.png, NNNN-right.png"},
+    [OPTION_FRAMES] = {"frames", "N", "frames to walk, 1/90 s each (1)"},
+    [OPTION_SIZE] = {"size", "WxH", "pixels per eye (1280x1440)"},
+    [OPTION_GAZE] = {"gaze", "centre|script|X,Y", "where the eyes look; degrees, right and up positive (centre)"},
+    [OPTION_FOV] = {"fov", "DEG", "vertical field of view (100)"},
+    [OPTION_START] = {"start", "S", "where on the path to begin, seconds (0)"},
+    [OPTION_STILL] = {"still", NULL, "keep the camera where it starts"},
+    [OPTION_REST] = {"rest", NULL, "keep moving objects at rest"},
+    [OPTION_ALL] = {"all", NULL, "write every frame, not only the last"},
+    [OPTION_REDRAW_MAP] = {"redraw-map", NULL, "write NNNN-left-redraw.png too: white was drawn anew"},
+    [OPTION_TIMES] = {"times", NULL, "print each pass's time in the last frame, one submission per pass"},
+    [OPTION_EXPLAIN] = {"explain", NULL, "print what was built, why, and its memory"},
+    [OPTION_DEVICE] = {"device", "NAME", "part of the GPU's name"},
+    {NULL, NULL, NULL},
+};
+
+static bool read_gaze(const char *text, struct request *out)
+{
+    char *end = NULL;
+    out->gaze = GAZE_AT;
+    if (strcmp(text, "script") == 0) {
+        out->gaze = GAZE_SCRIPT;
+        return true;
+    }
+    if (strcmp(text, "centre") == 0) {
+        out->gaze_x_deg = out->gaze_y_deg = 0;
+        return true;
+    }
+    out->gaze_x_deg = strtod(text, &end);
+    if (end == text || *end != ',')
+        return false;
+    const char *second = end + 1;
+    out->gaze_y_deg = strtod(second, &end);
+    return end != second && !*end && fabs(out->gaze_x_deg) <= 180 && fabs(out->gaze_y_deg) <= 90;
+}
+
+static const char *wrong_value(int option, const char *value, struct request *r)
+{
+    switch (option) {
+    case OPTION_FRAMES:
+        return options_uint64(value, 1, 1000000, &r->frames) ? NULL : "a whole number from 1 to 1000000";
+    case OPTION_SIZE:
+        return options_size(value, &r->width, &r->height) ? NULL : "WIDTHxHEIGHT, 16 to 16384 each";
+    case OPTION_GAZE:
+        return read_gaze(value, r) ? NULL : "centre, script or X,Y in degrees";
+    case OPTION_FOV:
+        return options_double(value, 1, 170, &r->fov_deg) ? NULL : "a number of degrees from 1 to 170";
+    default:
+        return options_double(value, 0, 1e6, &r->start_s) ? NULL : "a number of seconds from 0 to 1000000";
+    }
+}
+
+static void take_flag(int option, struct request *r)
+{
+    switch (option) {
+    case OPTION_STILL:
+        r->still = true;
+        break;
+    case OPTION_REST:
+        r->rest = true;
+        break;
+    case OPTION_ALL:
+        r->all = true;
+        break;
+    case OPTION_REDRAW_MAP:
+        r->redraw_map = true;
+        break;
+    case OPTION_TIMES:
+        r->times = true;
+        break;
+    default:
+        r->explain = true;
+        break;
+    }
+}
+
+// -1 to go on, else the exit status.
+static int read_options(int argc, char **argv, struct request *r)
+{
+    struct options options;
+    const char *mode = NULL;
+    char error[1024];
+    options_start(&options, argc, argv, "render", specs);
+    for (int i = options_next(&options); i != OPTIONS_DONE; i = options_next(&options)) {
+        const char *expected = NULL;
+        if (i == OPTIONS_ERROR)
+            return EXIT_USAGE;
+        if (i == OPTIONS_HELP) {
+            options_help(stdout, "render --mode MODE[:p=v,...] --scene NAME|FILE [--out DIR] [options]",
+                         "Walks a scene's camera path in one mode and writes the last frame, one PNG per eye.", specs);
+            return EXIT_DONE;
+        }
+        if (i == OPTIONS_WORD)
+            return options_wrong("render", "'%s' is not expected here", options.value);
+        if (!specs[i].argument)
+            take_flag(i, r);
+        else if (i == OPTION_MODE)
+            mode = options.value;
+        else if (i == OPTION_SCENE)
+            r->scene = options.value;
+        else if (i == OPTION_OUT)
+            r->out = options.value;
+        else if (i == OPTION_DEVICE)
+            r->device = options.value;
+        else if ((expected = wrong_value(i, options.value, r)))
+            return options_wrong("render", "--%s is '%s', not %s", specs[i].name, options.value, expected);
+    }
+    if (!mode || !r->scene)
+        return options_wrong("render", "%s is missing", mode ? "--scene" : "--mode");
+    if (!r->out && !r->explain && !r->times)
+        return options_wrong("render", "--out DIR is missing (or --explain, or --times)");
+    if (!mode_parse(mode, &r->choice, error, sizeof error))
+        return options_wrong("render", "%s", error);
+    return -1;
+}
+
+static void print_error(void *user, enum renderer_log_level level, const char *sentence)
+{
+    (void)user;
+    if (level != RENDERER_INFO)
+        fprintf(stderr, "fovstudy: %s\n", sentence);
+}
+
+static void make_frame(const struct request *r, const struct scene *scene, uint64_t number, struct frame *out)
+{
+    const double time_s = r->start_s + (double)number / 90; // DESIGN section 3: paths advance 1/90 s a frame
+    struct pose head = camera_path_pose(&scene->path, r->still ? r->start_s : time_s);
+    double x_deg = r->gaze_x_deg, y_deg = r->gaze_y_deg;
+    if (r->gaze == GAZE_SCRIPT)
+        gaze_script(1, time_s, &x_deg, &y_deg);
+    *out = (struct frame){.number = number, .animation_s = r->rest ? 0 : time_s};
+    for (int eye = 0; eye < EYES; eye++)
+        out->eyes[eye] = (struct frame_eye){.pose = viewing_eye_pose(&head, eye, VIEWING_DEFAULT_IPD_M),
+                                            .fov = viewing_symmetric_fov(r->fov_deg, r->width, r->height),
+                                            .gaze_x_deg = x_deg,
+                                            .gaze_y_deg = y_deg};
+}
+
+static bool write_picture(const struct request *r, uint64_t number, int eye, const char *what, int channels,
+                          const uint8_t *pixels)
+{
+    char path[4096];
+    snprintf(path, sizeof path, "%s/%04llu-%s%s.png", r->out, (unsigned long long)number, eye ? "right" : "left", what);
+    if (png_write(path, r->width, r->height, channels, pixels))
+        return true;
+    fprintf(stderr, "fovstudy: cannot write %s: %s\n", path, strerror(errno));
+    return false;
+}
+
+static bool write_frame(const struct request *r, struct renderer_option *option, uint64_t number)
+{
+    uint8_t *pixels = malloc(4 * (size_t)r->width * r->height);
+    bool ok = pixels != NULL;
+    for (int eye = 0; eye < EYES && ok; eye++) {
+        ok = renderer_read(option, eye, pixels) && write_picture(r, number, eye, "", 4, pixels);
+        if (ok && r->redraw_map)
+            ok = renderer_read_redraw_map(option, eye, pixels) && write_picture(r, number, eye, "-redraw", 1, pixels);
+    }
+    free(pixels);
+    return ok;
+}
+
+static void print_times(const struct request *r, const struct frame_stats *s)
+{
+    double all = 2.0 * r->width * r->height;
+    printf("frame %llu: %.2f ms on the GPU, %.2f ms on the CPU; shaded %llu px (%.2f %%), %llu triangles in %llu submodels\n",
+           (unsigned long long)r->frames - 1, s->gpu_ms, s->cpu_ms, (unsigned long long)s->shaded_px,
+           100 * (double)s->shaded_px / all, (unsigned long long)s->triangles, (unsigned long long)s->submodels);
+    for (uint32_t i = 0; i < s->timer_count; i++)
+        printf("  %-20s %8.3f ms\n", s->timers[i].name, s->timers[i].ms);
+}
+
+static bool walk(const struct request *r, const struct scene *scene, struct renderer_option *option)
+{
+    struct frame_stats stats = {0};
+    for (uint64_t n = 0; n < r->frames; n++) {
+        struct frame frame;
+        make_frame(r, scene, n, &frame);
+        if (!renderer_draw(option, &frame, &stats))
+            return false;
+        if (r->out && (r->all || n + 1 == r->frames) && !write_frame(r, option, n))
+            return false;
+    }
+    if (r->times)
+        print_times(r, &stats);
+    return true;
+}
+
+static bool make_folder(const char *path)
+{
+    char part[4096];
+    snprintf(part, sizeof part, "%s", path);
+    for (char *slash = strchr(part + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
+        *slash = '\0';
+        mkdir(part, 0777); // a failure shows at the last part
+        *slash = '/';
+    }
+    if (mkdir(part, 0777) == 0 || errno == EEXIST)
+        return true;
+    fprintf(stderr, "fovstudy: cannot make the folder %s: %s\n", path, strerror(errno));
+    return false;
+}
+
+static bool render(const struct request *r, const struct scene *scene)
+{
+    const struct renderer_desc desc = {.log = {print_error, NULL},
+                                       .device = r->device,
+                                       .width = r->width,
+                                       .height = r->height,
+                                       .validation = getenv("FOVSTUDY_VALIDATION") != NULL,
+                                       .pass_times = r->times};
+    struct renderer *renderer = renderer_create(&desc);
+    struct renderer_scene *uploaded = renderer ? renderer_scene_create(renderer, scene) : NULL;
+    struct renderer_option *option = uploaded ? renderer_option_create(renderer, uploaded, &r->choice) : NULL;
+    bool ok = option != NULL;
+    if (ok && r->explain) {
+        char text[10240];
+        ok = renderer_option_explain(option, text, sizeof text);
+        printf("%s on %s\n%s", scene->name, renderer_device(renderer)->name, text);
+    }
+    ok = ok && (!r->out || make_folder(r->out)) && walk(r, scene, option);
+    renderer_option_destroy(option);
+    renderer_scene_destroy(uploaded);
+    if (renderer && renderer_validation_messages(renderer))
+        ok = false;
+    renderer_destroy(renderer);
+    return ok;
+}
+
+int command_render(int argc, char **argv)
+{
+    struct request request = {.frames = 1, .width = 1280, .height = 1440, .fov_deg = VIEWING_DEFAULT_FOV_DEG};
+    int status = read_options(argc, argv, &request);
+    if (status >= 0)
+        return status;
+    char error[1024];
+    struct scene *scene = scene_open(request.scene, error, sizeof error);
+    if (!scene) {
+        fprintf(stderr, "fovstudy: %s\n", error);
+        return EXIT_FAILED;
+    }
+    fputs(scene->notes, stderr);
+    bool ok = render(&request, scene);
+    scene_destroy(scene);
+    return ok ? EXIT_DONE : EXIT_FAILED;
+}
