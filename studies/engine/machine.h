@@ -66,7 +66,7 @@ struct machine_view {
     int32_t condition;              // that option's index into plan.conditions, -1 for none
     double fade;                    // 0 the image, 1 gray; 1 means nothing need be rendered
     bool trial_started;             // this frame is the first of an attempt (a camera cut)
-    bool may_choose;                // both options were seen fully
+    bool may_choose;                // STIMULUS: both options were seen fully; REST: START is taken now
     int64_t stimulus_ns; // time on the trial's camera path: since its first frame, paused time taken out
     const char *text;    // consent, instructions or question text to show; NULL where the screen has none
     const struct protocol_question *question; // of QUESTION and of a toggle trial; else NULL

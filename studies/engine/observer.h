@@ -46,15 +46,18 @@ struct observer_errors {
     double slot[2];
 };
 
+// Its state; plain data, read and changed by observer_next only.
 struct observer {
     struct observer_parameters parameters;
     uint64_t key;
-    // what it is waiting to do
-    bool armed;
-    enum machine_screen screen;
-    uint32_t trial, attempt, step, toggles_planned;
+    bool armed; // `next` comes at due_ns
     int64_t due_ns;
     struct machine_event next;
+    enum machine_screen screen; // what it is armed for
+    uint32_t trial, attempt;
+    uint32_t step, toggles_planned;
+    enum plan_slot looking; // the option it has already dwelt on; NONE before the first
+    uint32_t events;        // sent so far
 };
 
 void observer_start(struct observer *observer, const struct observer_parameters *parameters, uint64_t seed,

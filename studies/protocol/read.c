@@ -208,7 +208,7 @@ bool read_integer(struct reader *reader, const struct yaml_node *node, const cha
 bool read_seconds(struct reader *reader, const struct yaml_node *node, const char *what, double max,
                   int64_t *out_ns)
 {
-    double seconds;
+    double seconds = 0;
     if (!read_number(reader, node, what, 0, max, &seconds))
         return false;
     *out_ns = (int64_t)floor(seconds * 1e9 + 0.5);

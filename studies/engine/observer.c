@@ -1,0 +1,279 @@
+#include "studies/engine/observer.h"
+
+#include "studies/engine/random.h"
+#include "studies/protocol/read.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum purpose { PURPOSE_KEY = 64, PURPOSE_WAIT, PURPOSE_TOGGLES, PURPOSE_DWELL, PURPOSE_CHOICE, PURPOSE_RATING };
+
+static const struct knob {
+    const char *name;
+    size_t offset;
+    double min, max, fallback;
+} knobs[] = {
+#define KNOB(name) #name, offsetof(struct observer_parameters, name)
+    {KNOB(threshold), 1e-9, 1e9, 0.02}, // our choice; the caller's metric sets its unit
+    {KNOB(slope), 0.05, 20, 1},         {KNOB(lapse), 0, 1, 0.02}, // Wichmann and Hill 2001: lapses of
+                                                                   // practised observers lie under about 5 %
+    {KNOB(side_bias), -20, 20, 0},      {KNOB(toggles_mean), 1, 100, 6}, // Franke 2021, section 8.2: more than
+                                                                         // five switches on average
+    {KNOB(dwell_s), 0.05, 600, 0.5}, // with six toggles of half a second a trial lasts about seven seconds
+    {KNOB(dwell_spread), 0, 3, 0.4},    {KNOB(rating_mean), -100, 100, 6.4}, // Franke 2021, section 8.2: first
+                                                                             // ratings 6.36 (sd 1.5) and 6.33
+                                                                             // (sd 2.0)
+    {KNOB(rating_sd), 0, 100, 1.75},    {KNOB(rating_drop), 0, 100, 0.5},    {KNOB(view_s), 0.05, 600, 4.5},
+    {KNOB(answer_s), 0.05, 600, 1},
+#undef KNOB
+};
+
+enum { KNOBS = sizeof knobs / sizeof knobs[0] };
+
+static double *knob_value(struct observer_parameters *parameters, const struct knob *knob)
+{
+    return (double *)(void *)((char *)parameters + knob->offset);
+}
+
+void observer_defaults(struct observer_parameters *out)
+{
+    *out = (struct observer_parameters){0};
+    for (size_t i = 0; i < KNOBS; i++)
+        *knob_value(out, &knobs[i]) = knobs[i].fallback;
+}
+
+static bool parse_number(const struct knob *knob, const char *text, double *out, char *error, size_t error_size)
+{
+    char *end = NULL;
+    double value = *text && strspn(text, "+-.0123456789eE") == strlen(text) ? strtod(text, &end) : 0;
+    if (!end || *end || !isfinite(value))
+        snprintf(error, error_size, "observer: %s is a number, not '%.60s'", knob->name, text);
+    else if (value < knob->min || value > knob->max)
+        snprintf(error, error_size, "observer: %s is %.60s; it must lie between %g and %g", knob->name, text,
+                 knob->min, knob->max);
+    else {
+        *out = value;
+        return true;
+    }
+    return false;
+}
+
+static bool parse_pair(char *pair, struct observer_parameters *out, char *error, size_t error_size)
+{
+    char *value = strchr(pair, '=');
+    if (!value) {
+        snprintf(error, error_size, "observer: '%.60s' has no value; write name=value", pair);
+        return false;
+    }
+    *value++ = '\0';
+    if (strcmp(pair, "errors") == 0) {
+        if (*value && strlen(value) < sizeof out->errors) {
+            memcpy(out->errors, value, strlen(value) + 1);
+            return true;
+        }
+        snprintf(error, error_size, "observer: errors names a file by at most %d characters",
+                 OBSERVER_PATH - 1);
+        return false;
+    }
+    const char *names[KNOBS + 2] = {NULL};
+    for (size_t i = 0; i < KNOBS; i++) {
+        names[i] = knobs[i].name;
+        if (strcmp(pair, knobs[i].name) == 0)
+            return parse_number(&knobs[i], value, knob_value(out, &knobs[i]), error, error_size);
+    }
+    names[KNOBS] = "errors";
+    const char *nearest = read_nearest(pair, names);
+    snprintf(error, error_size, "observer: parameter '%.60s' is not known; %s%s%s", pair,
+             nearest ? "did you mean '" : "see fovstudy run --help", nearest ? nearest : "",
+             nearest ? "'?" : "");
+    return false;
+}
+
+bool observer_parse(const char *spec, struct observer_parameters *out, char *error, size_t error_size)
+{
+    observer_defaults(out);
+    if (strcmp(spec, "sim") == 0)
+        return true;
+    if (strncmp(spec, "sim:", 4) != 0) {
+        snprintf(error, error_size, "observer '%.60s' is not known; it is sim or sim:name=value,...", spec);
+        return false;
+    }
+    char copy[1024];
+    if (strlen(spec + 4) >= sizeof copy) {
+        snprintf(error, error_size, "observer: more than %d characters; shorten it", (int)sizeof copy - 1);
+        return false;
+    }
+    memcpy(copy, spec + 4, strlen(spec + 4) + 1);
+    for (char *pair = copy; pair;) {
+        char *comma = strchr(pair, ',');
+        if (comma)
+            *comma = '\0';
+        if (!parse_pair(pair, out, error, error_size))
+            return false;
+        pair = comma ? comma + 1 : NULL;
+    }
+    return true;
+}
+
+void observer_start(struct observer *observer, const struct observer_parameters *parameters, uint64_t seed,
+                    uint32_t number)
+{
+    struct random_stream stream = random_stream(seed, PURPOSE_KEY, number, 0);
+    *observer = (struct observer){.parameters = *parameters,
+                                  .key = random_u64(&stream),
+                                  .screen = MACHINE_END,
+                                  .trial = UINT32_MAX,
+                                  .looking = PLAN_SLOT_NONE};
+}
+
+double observer_probability_a(const struct observer_parameters *parameters,
+                              const struct observer_errors *errors)
+{
+    double difference = (errors->slot[1] - errors->slot[0]) / parameters->threshold;
+    double logit = parameters->side_bias;
+    if (difference > 0 || difference < 0) // an error that is no number is no difference
+        logit += copysign(log(3) * pow(fabs(difference), parameters->slope), difference);
+    return parameters->lapse / 2 + (1 - parameters->lapse) / (1 + exp(-logit));
+}
+
+// A log-normal time within two standard deviations, so that no wait is endless.
+static int64_t wait_ns(struct random_stream *stream, double median_s, double spread)
+{
+    double deviate = random_normal(stream);
+    deviate = deviate > 2 ? 2 : deviate < -2 ? -2 : deviate;
+    return (int64_t)(median_s * exp(spread * deviate) * 1e9);
+}
+
+static struct random_stream trial_stream(const struct observer *observer, enum purpose purpose, uint32_t step)
+{
+    return random_stream(observer->key, purpose, observer->trial, observer->attempt << 16 | (step & 0xffff));
+}
+
+static void arm(struct observer *observer, int64_t due_ns, enum machine_event_kind kind)
+{
+    observer->armed = true;
+    observer->due_ns = due_ns;
+    observer->next = (struct machine_event){kind, 0};
+}
+
+// Times to answer a screen vary little.
+#define OBSERVER_ANSWER_SPREAD 0.25
+
+static void arm_screen(struct observer *observer, int64_t now_ns, enum machine_event_kind kind)
+{
+    struct random_stream stream = random_stream(observer->key, PURPOSE_WAIT, observer->events, 0);
+    arm(observer, now_ns + wait_ns(&stream, observer->parameters.answer_s, OBSERVER_ANSWER_SPREAD), kind);
+}
+
+// Toggles before the choice: the mean, up to two more or less.
+static uint32_t plan_toggles(const struct observer *observer)
+{
+    struct random_stream stream = trial_stream(observer, PURPOSE_TOGGLES, 0);
+    double whole = floor(observer->parameters.toggles_mean);
+    uint32_t mean = (uint32_t)whole + (random_unit(&stream) < observer->parameters.toggles_mean - whole);
+    uint32_t reach = mean > 2 ? 2 : mean - 1;
+    return mean - reach + random_below(&stream, 2 * reach + 1);
+}
+
+static void arm_stimulus(struct observer *observer, int64_t now_ns, const struct machine_view *view)
+{
+    if (view->fade > 0 || view->slot == PLAN_SLOT_NONE || view->slot == observer->looking)
+        return; // nothing new to look at yet
+    observer->looking = view->slot;
+    bool rate = view->trial && view->trial->kind == PROTOCOL_RATE;
+    struct random_stream stream = trial_stream(observer, PURPOSE_DWELL, observer->step);
+    if (rate)
+        arm(observer, now_ns + wait_ns(&stream, observer->parameters.view_s, OBSERVER_ANSWER_SPREAD),
+            MACHINE_START);
+    else
+        arm(observer,
+            now_ns + wait_ns(&stream, observer->parameters.dwell_s, observer->parameters.dwell_spread),
+            observer->step < observer->toggles_planned ? MACHINE_TOGGLE_KEY : MACHINE_CHOOSE);
+    observer->step++;
+}
+
+static void arm_any(struct observer *observer, int64_t now_ns, const struct machine_view *view)
+{
+    switch (view->screen) {
+    case MACHINE_CONSENT:
+        arm_screen(observer, now_ns, MACHINE_YES);
+        break;
+    case MACHINE_REST:
+        if (view->may_choose)
+            arm_screen(observer, now_ns, MACHINE_START);
+        break;
+    case MACHINE_INSTRUCTIONS:
+    case MACHINE_READY:
+    case MACHINE_PAUSED:
+        arm_screen(observer, now_ns, MACHINE_START);
+        break;
+    case MACHINE_QUESTION:
+        arm_screen(observer, now_ns, MACHINE_RATE);
+        break;
+    case MACHINE_ABORT:
+        arm_screen(observer, now_ns, MACHINE_NO);
+        break;
+    case MACHINE_STIMULUS:
+        arm_stimulus(observer, now_ns, view);
+        break;
+    case MACHINE_STORING:
+    case MACHINE_CONFIRMATION:
+    case MACHINE_END:
+        break;
+    }
+}
+
+static int32_t choose(const struct observer *observer, const struct observer_errors *errors)
+{
+    struct random_stream stream = trial_stream(observer, PURPOSE_CHOICE, 0);
+    return random_unit(&stream) < observer_probability_a(&observer->parameters, errors) ? PLAN_SLOT_A
+                                                                                        : PLAN_SLOT_B;
+}
+
+// The latent value falls between criteria half a point apart from the whole numbers; the ends take what lies
+// beyond.
+static int32_t rate(const struct observer *observer, const struct observer_errors *errors,
+                    const struct protocol_question *question)
+{
+    struct random_stream stream = trial_stream(observer, PURPOSE_RATING, 0);
+    const struct observer_parameters *p = &observer->parameters;
+    double seen = isfinite(errors->slot[0]) ? errors->slot[0] / p->threshold : 0;
+    double latent = floor(p->rating_mean - p->rating_drop * seen + p->rating_sd * random_normal(&stream) + 0.5);
+    return latent < question->scale_min   ? question->scale_min
+           : latent > question->scale_max ? question->scale_max
+                                          : (int32_t)latent;
+}
+
+bool observer_next(struct observer *observer, int64_t now_ns, const struct machine_view *view,
+                   const struct observer_errors *errors, int64_t *out_at_ns, struct machine_event *out_event)
+{
+    bool new_trial = view->trial_index != observer->trial || view->attempt != observer->attempt;
+    if (new_trial || view->screen != observer->screen) {
+        observer->armed = false;
+        observer->screen = view->screen;
+        observer->looking = PLAN_SLOT_NONE;
+    }
+    if (new_trial) {
+        observer->trial = view->trial_index;
+        observer->attempt = view->attempt;
+        observer->step = 0;
+        observer->toggles_planned = plan_toggles(observer);
+    }
+    if (!observer->armed)
+        arm_any(observer, now_ns, view);
+    if (!observer->armed || observer->due_ns > now_ns)
+        return false;
+    observer->armed = false;
+    observer->events++;
+    *out_at_ns = observer->due_ns;
+    *out_event = observer->next;
+    if (out_event->kind == MACHINE_CHOOSE)
+        out_event->value = choose(observer, errors);
+    else if (out_event->kind == MACHINE_RATE)
+        out_event->value = view->question ? rate(observer, errors, view->question) : 0;
+    return true;
+}

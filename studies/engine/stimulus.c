@@ -1,0 +1,146 @@
+// What one attempt of a trial shows: fades by time, exposures, which options were seen.
+#include "studies/engine/machine_state.h"
+
+static const struct plan_trial *running(const struct machine *machine)
+{
+    return &machine->plan->trials[machine->trial];
+}
+
+void stimulus_begin(struct machine *machine)
+{
+    machine->stimulus = (struct stimulus){.starting = true,
+                                          .full_ns = -1,
+                                          .slot = running(machine)->first_shown,
+                                          .target = running(machine)->first_shown,
+                                          .fade = FADE_IN,
+                                          .level = 1};
+    machine->attempts[machine->trial]++;
+}
+
+void stimulus_close_exposure(struct machine *machine)
+{
+    if (!machine->stimulus.exposed)
+        return;
+    machine->stimulus.exposed = false;
+    struct machine_record *record = machine_push(machine, MACHINE_EXPOSURE, machine->stimulus.exposure.end_ns);
+    if (!record)
+        return;
+    record->slot = machine->stimulus.exposure.slot;
+    record->start_ns = machine->stimulus.exposure.start_ns;
+    record->end_ns = machine->stimulus.exposure.end_ns;
+    record->full_start_ns = machine->stimulus.exposure.full_start_ns;
+    record->full_end_ns = machine->stimulus.exposure.full_end_ns;
+}
+
+static void note_exposure(struct machine *machine, int64_t now_ns)
+{
+    struct stimulus *s = &machine->stimulus;
+    if (s->level >= 1)
+        return;
+    if (s->exposed && s->exposure.slot != s->slot)
+        stimulus_close_exposure(machine);
+    if (!s->exposed) {
+        s->exposed = true;
+        s->exposure = (struct machine_record){
+            .slot = s->slot, .start_ns = now_ns, .full_start_ns = -1, .full_end_ns = -1};
+    }
+    s->exposure.end_ns = now_ns;
+    if (s->level > 0)
+        return;
+    if (s->exposure.full_start_ns < 0)
+        s->exposure.full_start_ns = now_ns;
+    s->exposure.full_end_ns = now_ns;
+    s->last_full_ns = now_ns;
+    s->seen[s->slot] = true;
+    if (s->full_ns < 0)
+        s->full_ns = now_ns;
+}
+
+// Part of a stretch that has passed, 0..1; a stretch of no length has passed.
+static double part(int64_t passed_ns, int64_t length_ns)
+{
+    return passed_ns >= length_ns ? 1 : passed_ns <= 0 ? 0 : (double)passed_ns / (double)length_ns;
+}
+
+static void fade_in(struct stimulus *s, const struct protocol_settings *settings, int64_t now_ns)
+{
+    s->level = 1 - part(now_ns - s->fade_ns, settings->fade_from_gray_ns);
+    if (s->level <= 0)
+        s->fade = FADE_NONE;
+}
+
+static void fade_switch(struct stimulus *s, const struct protocol_settings *settings, int64_t now_ns)
+{
+    int64_t to_gray = settings->fade_to_gray_ns, gray = settings->fade_gray_ns, back = to_gray + gray;
+    int64_t passed = now_ns - s->fade_ns;
+    if (passed < to_gray) {
+        s->level = part(passed, to_gray);
+        return;
+    }
+    if (passed >= back && !s->gray_shown && gray > 0) {
+        s->fade_ns = now_ns - back; // no frame was gray: this one is, and the way back starts here
+        passed = back;
+    }
+    s->gray_shown = true;
+    if (passed - to_gray >= gray / 2)
+        s->slot = s->target;
+    s->level = passed < back ? 1 : 1 - part(passed - back, settings->fade_from_gray_ns);
+    if (s->level <= 0)
+        s->fade = FADE_NONE;
+}
+
+void stimulus_frame(struct machine *machine, int64_t now_ns)
+{
+    struct stimulus *s = &machine->stimulus;
+    const struct protocol_settings *settings = running(machine)->resolved;
+    s->began_now = s->starting;
+    if (s->starting) {
+        s->starting = false;
+        s->start_ns = s->fade_ns = now_ns;
+        machine_push(machine, MACHINE_TRIAL_STARTED, now_ns);
+    }
+    if (s->fade_ns == STIMULUS_NOT_YET)
+        s->fade_ns = now_ns; // the first frame after a pause
+    if (s->fade == FADE_IN)
+        fade_in(s, settings, now_ns);
+    else if (s->fade == FADE_SWITCH)
+        fade_switch(s, settings, now_ns);
+    s->camera_ns = now_ns - s->start_ns - s->paused_ns;
+    note_exposure(machine, now_ns);
+}
+
+void stimulus_toggle(struct machine *machine, int64_t now_ns)
+{
+    struct stimulus *s = &machine->stimulus;
+    bool taken = !s->starting && s->fade == FADE_NONE;
+    struct machine_record *record =
+        machine_push(machine, taken ? MACHINE_TOGGLE : MACHINE_TOGGLE_IGNORED, now_ns);
+    if (record)
+        record->slot = taken ? (enum plan_slot)(1 - (int)s->slot) : s->target;
+    if (!taken)
+        return;
+    s->toggles++;
+    s->target = (enum plan_slot)(1 - (int)s->slot);
+    s->fade = FADE_SWITCH;
+    s->fade_ns = s->last_full_ns; // the half second counts from the last full frame, not from the key
+    s->gray_shown = false;
+}
+
+void stimulus_resume(struct machine *machine, int64_t paused_ns)
+{
+    struct stimulus *s = &machine->stimulus;
+    if (s->starting)
+        return;
+    s->paused_ns += paused_ns;
+    if (s->full_ns >= 0)
+        s->paused_full_ns += paused_ns;
+    s->slot = s->target;
+    s->fade = FADE_IN;
+    s->fade_ns = STIMULUS_NOT_YET;
+    s->level = 1;
+}
+
+int64_t stimulus_reaction(const struct machine *machine, int64_t now_ns)
+{
+    return now_ns - machine->stimulus.full_ns - machine->stimulus.paused_full_ns;
+}
