@@ -162,7 +162,8 @@ static bool prepare(struct loop *loop)
 {
     struct machine_view view;
     machine_look(loop->machine, &view);
-    bool soon = view.screen == MACHINE_READY || view.screen == MACHINE_REST || view.screen == MACHINE_STIMULUS;
+    bool soon = view.screen == MACHINE_INSTRUCTIONS || view.screen == MACHINE_READY ||
+                view.screen == MACHINE_REST || view.screen == MACHINE_STIMULUS;
     if (!loop->desc->stage || !view.trial || !soon)
         return true;
     return stage_prepare(loop->desc->stage, view.trial_index, loop->error, loop->error_size);
@@ -175,6 +176,7 @@ static bool present(struct loop *loop, const struct machine_view *view, int64_t 
         return true;
     }
     loop->state.selected = keyboard_selected(&loop->keyboard, view);
+    loop->state.starts_trial = view->text != loop->desc->plan->protocol->instructions;
     loop->state.look_at_both = loop->notice_ns >= 0 && now - loop->notice_ns < NOTICE_SHOWN_NS;
     return show_frame(&loop->show, view, &loop->state, &loop->fovea, &loop->recorder, now, loop->error,
                       loop->error_size);

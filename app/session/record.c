@@ -182,6 +182,12 @@ static enum recorder_result end_session(struct recorder *recorder, const struct 
     struct store_error why;
     const char *status = record->complete ? "complete" : "aborted";
     record_time_utc(now);
+    // A trial that was under way has no answer and gets none.
+    if (recorder->trial_id &&
+        store_end_trial(recorder->store, recorder->trial_id, "skipped", record->at_ns, &why) != STORE_OK) {
+        snprintf(error, error_size, "%s", why.text);
+        return RECORDER_FAILED;
+    }
     if (store_end_session(recorder->store, recorder->ids->session_id, status, now, &why) != STORE_OK) {
         snprintf(error, error_size, "%s", why.text);
         return RECORDER_FAILED;

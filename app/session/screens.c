@@ -17,24 +17,33 @@ static void put(char *out, size_t size, const char *text)
 
 #define PUT(field, text) put(field, sizeof(field), text)
 
+#define SWITCH_KEYS                                                                                            \
+    "Space: switch between A and B\n\xe2\x86\x90 or 1: choose A    \xe2\x86\x92 or 2: choose B\n"
+
+// What the keys do in the trial to come, and how it starts.
+static void trial_hint(const struct machine_view *view, struct screen *out)
+{
+    bool toggle = view->trial->kind == PROTOCOL_TOGGLE;
+    bool by_itself = view->screen == MACHINE_REST && view->trial->resolved->advance == PROTOCOL_ADVANCE_AUTO;
+    snprintf(out->hint, sizeof out->hint, "%s%s", toggle ? SWITCH_KEYS : "",
+             by_itself ? ""
+             : toggle  ? "Enter: start"
+                       : "Enter: start; Enter again: give your rating");
+}
+
 static void before_trial(const struct machine_view *view, struct screen *out)
 {
-    if (!view->trial) {
-        PUT(out->body, view->text);
+    if (!view->trial)
         return;
-    }
+    bool toggle = view->trial->kind == PROTOCOL_TOGGLE;
     snprintf(out->title, sizeof out->title, "%" PRIu32 " of %" PRIu32, view->done + 1, view->total);
-    if (view->trial->kind == PROTOCOL_TOGGLE) {
-        PUT(out->body, view->question ? view->question->text : view->text);
-        PUT(out->hint,
-            "Space: switch between A and B\n\xe2\x86\x90 or 1: choose A    \xe2\x86\x92 or 2: choose B\n"
-            "Enter: start");
-    } else {
-        PUT(out->body, "Look around. Press Enter again when you want to give your rating.");
-        PUT(out->hint, "Enter: start");
-    }
-    if (view->trial->resolved->advance == PROTOCOL_ADVANCE_AUTO && view->screen == MACHINE_REST)
-        PUT(out->hint, "");
+    if (toggle)
+        snprintf(out->body, sizeof out->body, "%s\n%s comes first.",
+                 view->trial->question ? view->trial->question->text : "",
+                 view->trial->first_shown == PLAN_SLOT_B ? "B" : "A");
+    else
+        PUT(out->body, "Look around in the scene.");
+    trial_hint(view, out);
 }
 
 static void question(const struct machine_view *view, const struct screen_state *state, struct screen *out)
@@ -93,6 +102,8 @@ void screen_of(const struct machine_view *view, const struct screen_state *state
     case MACHINE_INSTRUCTIONS:
         PUT(out->body, view->text);
         PUT(out->hint, "Enter: go on");
+        if (state->starts_trial && view->trial)
+            trial_hint(view, out);
         break;
     case MACHINE_READY:
     case MACHINE_REST:

@@ -16,11 +16,12 @@ struct screen_state {
     enum plan_slot going_to; // the option a switch leads to: its letter is shown while all is gray
     int32_t selected;        // marked rating
     bool look_at_both;       // a choice came before both were seen
+    bool starts_trial;       // INSTRUCTIONS: a trial follows at once
 };
 
 struct screen {
     bool shown; // false: no text
-    char title[96], body[8192], hint[256], more[64], low[96], high[96];
+    char title[96], body[8192], hint[320], more[64], low[96], high[96];
     int scale_min, scale_max, scale_selected;
     double size;
 };
