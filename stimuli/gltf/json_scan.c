@@ -6,6 +6,7 @@
 // ours.
 #include "stimuli/gltf/file.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -94,6 +95,17 @@ static bool scan_string(struct scan *scan)
     return true;
 }
 
+// Whether a double can hold the number; parsers throw where it cannot.
+static bool is_finite(const char *text, size_t length)
+{
+    char copy[64];
+    if (length >= sizeof copy)
+        return true; // the parser judges these
+    memcpy(copy, text, length);
+    copy[length] = '\0';
+    return isfinite(strtod(copy, NULL));
+}
+
 static bool scan_number(struct scan *scan)
 {
     size_t start = scan->at;
@@ -102,16 +114,20 @@ static bool scan_number(struct scan *scan)
         integer = integer && scan->text[scan->at] >= '0' && scan->text[scan->at] <= '9';
         scan->at++;
     }
-    const char *key = scan->key[scan->depth];
+    const char *key = scan->key[scan->depth], *number = scan->text + start;
+    size_t digits = scan->at - start;
+    char what[160];
+    if (!integer && !is_finite(number, digits)) {
+        snprintf(what, sizeof what, "%.*s is larger than any number we can hold", (int)digits, number);
+        return fail(scan, start, what);
+    }
     bool attribute = scan->depth > 0 && strcmp(scan->key[scan->depth - 1], "attributes") == 0;
     if (scan->foreign > 0 || (!is_integer_key(key) && !attribute))
         return true;
-    size_t digits = scan->at - start;
-    if (integer && (digits < 10 || (digits == 10 && memcmp(scan->text + start, "2147483647", 10) <= 0)))
+    if (integer && (digits < 10 || (digits == 10 && memcmp(number, "2147483647", 10) <= 0)))
         return true;
-    char what[160];
     snprintf(what, sizeof what, "\"%s\" is %.*s, not an integer from 0 to 2147483647", key,
-             (int)(digits < 40 ? digits : 40), scan->text + start);
+             (int)(digits < 40 ? digits : 40), number);
     return fail(scan, start, what);
 }
 
