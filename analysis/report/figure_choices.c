@@ -24,10 +24,12 @@ static void write_bar(FILE *data, const struct choice_cell *cell, size_t index, 
     snprintf(word, sizeof word, "%" PRId64 "/%" PRId64, cell->chosen, cell->n);
     fputc(' ', data);
     figure_word(data, word);
-    if (cell->level_count)
-        level_words(&cell->levels[cell->level_count - 1], !narrow, word);
-    else
+    if (cell->level_count) {
+        const struct choice_level *last = &cell->levels[cell->level_count - 1];
+        level_words(last->factor, last->value, !narrow, word);
+    } else {
         snprintf(word, sizeof word, "%zu", index + 1);
+    }
     fputc(' ', data);
     figure_word(data, word);
     fputc('\n', data);

@@ -26,10 +26,11 @@ static double write_rows(FILE *data, const struct sample *sample, const struct f
             continue;
         const struct frame_times *t = g->gpu.count ? &g->gpu : &g->cpu;
         fprintf(data, "%zu %.6f %.6f %.6f ", row++, t->median, t->p95, t->p99);
-        figure_word(data, sample->conditions[g->condition].label);
-        char value[48];
-        snprintf(value, sizeof value, " \"%.*f\"\n", t->p99 < 10 ? 2 : 1, t->median);
-        fputs(value, data);
+        char words[320];
+        snprintf(words, sizeof words, "%s: %.*f ms", sample->conditions[g->condition].words,
+                 t->median < 10 ? 2 : 1, t->median);
+        figure_word(data, words);
+        fputc('\n', data);
         most = fmax(most, t->p99);
     }
     return most;
@@ -47,14 +48,13 @@ bool figure_frames(const struct sample *sample, const struct frames *frames, con
     double most = write_rows(figure.data, sample, frames);
     fprintf(figure.script,
             "set yrange [%.2f:-0.75]\nset xrange [0:%.6g]\nunset ytics\nset xtics format '%%g ms'\n"
-            "set lmargin 1\nset rmargin 4\nset tmargin 0.5\nset bmargin 2\n"
+            "set lmargin 3\nset rmargin 3\nset tmargin 0.5\nset bmargin 2\n"
             "set grid xtics lw 0.6 lt 1 lc rgb '#dfe2e8'\n",
             (double)rows - 0.4, most > 0 ? most * 1.04 : 1);
     fputs("plot 'data' using 2:1:($4-$2):(0) with vectors nohead lw 5 lc rgb '" FIGURE_GREEN
           "', '' using 2:1:($3-$2):(0) with vectors nohead lw 5 lc rgb '" FIGURE_GREEN_EDGE
           "', '' using 2:1 with points pt 7 ps 1.2 lc rgb '" FIGURE_ORANGE
-          "', '' using (0):($1-0.42):5 with labels left offset 0.3,0 tc rgb '" FIGURE_INK
-          "', '' using 4:1:6 with labels left offset 0.8,0 tc rgb '" FIGURE_INK "'\n",
+          "', '' using (0):($1-0.42):5 with labels left offset 0.3,0 tc rgb '" FIGURE_INK "'\n",
           figure.script);
     return figure_end(&figure, desc->text, out_svg, error, error_size);
 }

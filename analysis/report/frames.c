@@ -2,6 +2,7 @@
 
 #include "analysis/stats/quantile.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -23,7 +24,10 @@ static struct frame_group *find_group(struct filling *f, const struct store_fram
     for (size_t i = 0; i < all->group_count; i++)
         if (all->groups[i].condition == condition && strcmp(all->groups[i].phase, row->phase) == 0)
             return &all->groups[i];
-    struct frame_group group = {.condition = condition, .phase = sample_keep(f->sample, row->phase)};
+    struct frame_group group = {.condition = condition,
+                                .label = condition == SAMPLE_NONE ? "gray or text"
+                                                                  : f->sample->conditions[condition].label,
+                                .phase = sample_keep(f->sample, row->phase)};
     if (!group.phase || !sample_grow(&all->groups, all->group_count, sizeof all->groups[0]))
         return NULL;
     all->groups[all->group_count] = group;
@@ -87,13 +91,35 @@ static int phase_order(const char *phase)
     return i;
 }
 
+// Words rising, numbers within them falling, as the cells of choices.h are ordered.
+static int label_order(const char *a, const char *b)
+{
+    while (*a && *b) {
+        if (isdigit((unsigned char)*a) && isdigit((unsigned char)*b)) {
+            char *after_a, *after_b;
+            double x = strtod(a, &after_a), y = strtod(b, &after_b);
+            if (x != y)
+                return x < y ? 1 : -1;
+            a = after_a;
+            b = after_b;
+        } else if (*a != *b) {
+            break;
+        } else {
+            a++;
+            b++;
+        }
+    }
+    return (unsigned char)*a - (unsigned char)*b;
+}
+
 static int by_phase(const void *x, const void *y)
 {
     const struct frame_group *a = x, *b = y;
     int p = phase_order(a->phase), q = phase_order(b->phase);
     if (p != q)
         return p - q;
-    return (a->condition > b->condition) - (a->condition < b->condition);
+    int order = label_order(a->label, b->label);
+    return order ? order : (a->condition > b->condition) - (a->condition < b->condition);
 }
 
 bool frames_load(struct frames *out, struct sample *sample, char *error, size_t error_size)

@@ -15,7 +15,8 @@ struct frame_times {
 };
 
 struct frame_group {
-    size_t condition; // SAMPLE_NONE: gray and text
+    size_t condition;  // SAMPLE_NONE: gray and text
+    const char *label; // of the condition, "gray or text" for none
     const char *phase;
     int64_t frames, late;
     struct frame_times gpu, cpu, interval;
@@ -26,7 +27,7 @@ struct frame_group {
 
 struct frames {
     size_t group_count;
-    struct frame_group *groups; // stimulus first, then by condition
+    struct frame_group *groups; // stimulus first, then by label: words rising, numbers falling
     int64_t frames, late;
     bool simulated_clock; // of any frame
 };

@@ -7,11 +7,11 @@
 static const char *const units[][2] = {
     {"_deg", "\u00b0"}, {"_ms", " ms"}, {"_px", " px"}, {"_hz", " Hz"}, {"_m", " m"}};
 
-void level_words(const struct choice_level *level, bool named, char out[96])
+void level_words(const char *factor, const char *value, bool named, char out[96])
 {
     char name[64];
     const char *unit = "";
-    snprintf(name, sizeof name, "%s", strcmp(level->factor, "epsilon") == 0 ? "\u03b5" : level->factor);
+    snprintf(name, sizeof name, "%s", strcmp(factor, "epsilon") == 0 ? "\u03b5" : factor);
     size_t length = strlen(name);
     for (size_t i = 0; i < sizeof units / sizeof units[0] && !unit[0]; i++) {
         size_t size = strlen(units[i][0]);
@@ -23,7 +23,7 @@ void level_words(const struct choice_level *level, bool named, char out[96])
     for (char *c = name; *c; c++)
         if (*c == '_')
             *c = ' ';
-    snprintf(out, 96, "%s%s%.20s%s", named ? name : "", named ? " " : "", level->value, unit);
+    snprintf(out, 96, "%s%s%.20s%s", named ? name : "", named ? " " : "", value, unit);
 }
 
 void level_join(const struct choice_cell *cell, size_t from, size_t to, char out[256])
@@ -31,7 +31,7 @@ void level_join(const struct choice_cell *cell, size_t from, size_t to, char out
     out[0] = '\0';
     for (size_t i = from; i < to && i < cell->level_count; i++) {
         char words[96];
-        level_words(&cell->levels[i], true, words);
+        level_words(cell->levels[i].factor, cell->levels[i].value, true, words);
         size_t used = strlen(out);
         snprintf(out + used, 256 - used, "%s%s", i > from ? ", " : "", words);
     }

@@ -12,7 +12,7 @@
 
 const char *report_label(const struct report *r, size_t condition)
 {
-    return condition == SAMPLE_NONE ? "gray or text" : r->sample->conditions[condition].label;
+    return condition == SAMPLE_NONE ? "gray or text" : r->sample->conditions[condition].words;
 }
 
 bool report_outside(const struct choice_cell *cell)

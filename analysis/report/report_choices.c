@@ -63,7 +63,7 @@ static void choices_caption(const struct report *r, char *out, size_t size)
 {
     snprintf(
         out, size,
-        "Percent of choices for the test option <span class=\"key\" style=\"background:#e8912d\"></span>. "
+        "<span class=\"key\" style=\"background:#e8912d\"></span> Percent of choices for the test option. "
         "<span class=\"key\" style=\"background:#cfe6d2\"></span> The %g&nbsp;%% region of the null hypothesis "
         "(both options chosen equally often) for each cell\u2019s own n, drawn half an answer wider on both "
         "sides; "

@@ -54,8 +54,7 @@ void report_frames(const struct report *r)
               out);
     fputs("</p>\n", out);
     report_figure(r, &r->frames_figure,
-                  "Time per stimulus frame on the GPU (on the CPU where no GPU time is known): dot and number "
-                  "at the end, "
+                  "Time per stimulus frame on the GPU (on the CPU where no GPU time is known): dot and number, "
                   "median; dark line to the 95th, pale line to the 99th percentile.");
     fputs("<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"Frame "
           "times\"><table>\n<caption>Milliseconds; "

@@ -93,7 +93,7 @@ static bool sessions_table(const struct report *r, char *error, size_t error_siz
 static void count_item(const struct report *r, int64_t count, const char *what)
 {
     if (count)
-        fprintf(r->out, "<li>%" PRId64 " %s</li>\n", count, what);
+        fprintf(r->out, "<li>%s: %" PRId64 "</li>\n", what, count);
 }
 
 static void left_out(const struct report *r)

@@ -31,7 +31,7 @@ static void question_table(const struct report *r, const struct rating_question 
 {
     FILE *out = r->out;
     fputs("<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"Ratings per "
-          "order\"><table>\n<caption>Second minus first "
+          "order\"><table class=\"wrap\">\n<caption>Second minus first "
           "rating within each order, paired t-test; M (SD)</caption>\n<thead><tr><th scope=\"col\" "
           "class=\"word\">first</th>"
           "<th scope=\"col\" class=\"word\">second</th><th scope=\"col\">n</th><th scope=\"col\">first</th><th "

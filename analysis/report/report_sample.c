@@ -68,6 +68,14 @@ static void fact_status(const struct sample_session *s, char out[512])
     snprintf(out, 512, "%s", s->status);
 }
 
+static size_t sessions_used(const struct sample *sample)
+{
+    size_t used = 0;
+    for (size_t i = 0; i < sample->session_count; i++)
+        used += !sample->sessions[i].excluded;
+    return used;
+}
+
 // Every distinct value, with the number of sessions where there are several.
 static void fact_row(const struct report *r, const char *name, fact_fn fact)
 {
@@ -88,8 +96,9 @@ static void fact_row(const struct report *r, const char *name, fact_fn fact)
         if (sample->sessions[i].excluded || !first)
             continue;
         fputs(distinct++ ? "<br>" : "", r->out);
-        html_printf(r->out, "%s (%zu %s)", value[0] ? value : "not recorded", count,
-                    count == 1 ? "session" : "sessions");
+        html_text(r->out, value[0] ? value : "not recorded");
+        if (count != sessions_used(sample))
+            html_printf(r->out, " (%zu %s)", count, count == 1 ? "session" : "sessions");
     }
     fputs("</td></tr>\n", r->out);
 }
@@ -150,7 +159,10 @@ static void attribute_row(const struct report *r, const char *key)
     }
     if (count + words) {
         fputs("<tr>", r->out);
-        html_cell(r->out, "th scope=\"row\"", "%s", key);
+        fputs("<th scope=\"row\">", r->out);
+        for (const char *c = key; *c; c++) // JSON keys are words joined by '_'
+            html_printf(r->out, "%c", *c == '_' ? ' ' : *c);
+        fputs("</th>", r->out);
         fputs("<td>", r->out);
         if (words == 0 && count > 1) {
             struct stat_moments m = stat_moments(values, count);
@@ -167,9 +179,7 @@ static void attribute_row(const struct report *r, const char *key)
 void report_sample(const struct report *r)
 {
     const struct sample *s = r->sample;
-    size_t used = 0;
-    for (size_t i = 0; i < s->session_count; i++)
-        used += !s->sessions[i].excluded;
+    size_t used = sessions_used(s);
     fputs("<h2>Study and sample</h2>\n<div class=\"table\"><table class=\"facts\"><tbody>\n", r->out);
     fact_row(r, "Protocol", fact_protocol);
     fprintf(r->out, "<tr><th scope=\"row\">%s</th><td>%zu (%zu %s)</td></tr>\n",
@@ -182,7 +192,7 @@ void report_sample(const struct report *r)
         if (first)
             attribute_row(r, s->attributes[i].key);
     }
-    fact_row(r, "Sessions", fact_status);
+    fact_row(r, "Status", fact_status);
     fact_row(r, "Device", fact_device);
     fact_row(r, "Driver", fact_driver);
     fact_row(r, "Display", fact_display);

@@ -47,7 +47,9 @@ struct sample_attribute {
 struct sample_condition {
     const char *mode;
     const char *parameters; // "epsilon=0.2 fovea_deg=10", "" for none
-    const char *label;      // the mode, with those parameters that differ within it in this sample
+    const char
+        *label; // the mode, with those parameters that differ within it in this sample, as modes name them
+    const char *words; // the same for people: "time_warped ε 0.2, fovea 17°"
 };
 
 // A condition's number in its file, or a member of a trial's factors.

@@ -1,4 +1,5 @@
 // Fills a sample from its files, one file after another.
+#include "analysis/report/level.h"
 #include "analysis/report/sample_private.h"
 
 #include <math.h>
@@ -115,7 +116,7 @@ static bool add_condition(void *user, const struct store_member_row *row)
     struct filling *f = user;
     struct sample *s = f->sample;
     if (sample_find_condition(s, f->file, row->owner) == SAMPLE_NONE) {
-        struct sample_condition condition = {sample_keep(s, row->owner_text), "", NULL};
+        struct sample_condition condition = {sample_keep(s, row->owner_text), "", NULL, NULL};
         if (!condition.mode || !sample_grow(&s->conditions, s->condition_count, sizeof s->conditions[0]) ||
             !sample_grow(&s->condition_ids, s->condition_id_count, sizeof s->condition_ids[0]))
             return false;
@@ -171,16 +172,24 @@ static bool parameter_varies(const struct sample *s, size_t index)
 
 static bool label_condition(struct sample *s, size_t condition)
 {
-    char label[256];
+    char label[256], words[256];
     snprintf(label, sizeof label, "%s", s->conditions[condition].mode);
+    snprintf(words, sizeof words, "%s", s->conditions[condition].mode);
+    const char *comma = "";
     for (size_t i = 0; i < s->parameter_count; i++) {
-        size_t used = strlen(label);
-        if (s->parameters[i].condition == condition && parameter_varies(s, i))
-            snprintf(label + used, sizeof label - used, "%s %s %s", strchr(label, ' ') ? "," : "",
-                     s->parameters[i].key, s->parameters[i].value);
+        size_t used = strlen(label), words_used = strlen(words);
+        if (s->parameters[i].condition != condition || !parameter_varies(s, i))
+            continue;
+        char word[96];
+        level_words(s->parameters[i].key, s->parameters[i].value, true, word);
+        snprintf(label + used, sizeof label - used, "%s %s %s", comma, s->parameters[i].key,
+                 s->parameters[i].value);
+        snprintf(words + words_used, sizeof words - words_used, "%s %s", comma, word);
+        comma = ",";
     }
     s->conditions[condition].label = sample_keep(s, label);
-    return s->conditions[condition].label != NULL;
+    s->conditions[condition].words = sample_keep(s, words);
+    return s->conditions[condition].label && s->conditions[condition].words;
 }
 
 static bool add_exclusion(void *user, const struct store_exclusion_row *row)

@@ -29,14 +29,14 @@ static void print_notes(const struct sample *sample, const struct choices *c)
              "too optimistic.");
     study_notes(sample);
     if (c->excluded)
-        printf("Left out: %" PRId64 " answers to excluded trials.\n", c->excluded);
+        printf("Left out, answers to excluded trials: %" PRId64 ".\n", c->excluded);
     if (c->not_done)
-        printf("Left out: %" PRId64 " answers to trials that are not done.\n", c->not_done);
+        printf("Left out, answers to trials that are not done: %" PRId64 ".\n", c->not_done);
     if (c->other_kinds)
-        printf("Left out: %" PRId64 " answers to practice, catch, null and staircase trials.\n",
+        printf("Left out, answers to practice, catch, null and staircase trials: %" PRId64 ".\n",
                c->other_kinds);
     if (c->no_test_slot)
-        printf("Left out: %" PRId64 " answers to trials without a test option.\n", c->no_test_slot);
+        printf("Left out, answers to trials without a test option: %" PRId64 ".\n", c->no_test_slot);
 }
 
 static bool print_text(const struct sample *sample, const struct choices *c)

@@ -15,11 +15,6 @@ static const char help[] =
     "  --simulated  analyse simulated sessions, which are left out otherwise\n"
     "  --json       one object with the groups in an array\n";
 
-static const char *option_label(const struct sample *sample, const struct frame_group *g)
-{
-    return g->condition == SAMPLE_NONE ? "gray or text" : sample->conditions[g->condition].label;
-}
-
 static void times_cells(struct table *t, const struct frame_times *times)
 {
     const double values[] = {times->median, times->p95, times->p99};
@@ -41,7 +36,7 @@ static bool print_text(const struct sample *sample, const struct frames *f)
     for (size_t i = 0; i < f->group_count; i++) {
         const struct frame_group *g = &f->groups[i];
         table_cell(&t, "%s", g->phase);
-        table_cell(&t, "%s", option_label(sample, g));
+        table_cell(&t, "%s", g->label);
         table_cell(&t, "%" PRId64, g->frames);
         table_cell(&t, "%" PRId64, g->late);
         table_cell(&t, "%.2f", 100 * (double)g->late / (double)g->frames);
@@ -82,7 +77,7 @@ static void print_json(const struct sample *sample, const struct frames *f)
         const struct frame_group *g = &f->groups[i];
         json_open(&json, NULL, '{');
         json_text(&json, "phase", g->phase);
-        json_text(&json, "option", option_label(sample, g));
+        json_text(&json, "option", g->label);
         json_integer(&json, "frames", g->frames);
         json_integer(&json, "late", g->late);
         times_json(&json, "gpu_ms", &g->gpu);

@@ -56,7 +56,7 @@ static bool print_question(const struct sample *sample, const struct rating_ques
         printf("First ratings are not compared: that needs two order groups, there %s %zu.\n",
                q->group_count == 1 ? "is" : "are", q->group_count);
     if (q->unpaired)
-        printf("Left out: %" PRId64 " sessions without two ratings of different options.\n", q->unpaired);
+        printf("Left out, sessions without two ratings of different options: %" PRId64 ".\n", q->unpaired);
     putchar('\n');
     return ok;
 }
@@ -65,13 +65,13 @@ static void print_notes(const struct sample *sample, const struct ratings *r)
 {
     study_notes(sample);
     if (r->excluded)
-        printf("Left out: %" PRId64 " ratings in excluded trials.\n", r->excluded);
+        printf("Left out, ratings in excluded trials: %" PRId64 ".\n", r->excluded);
     if (r->not_done)
-        printf("Left out: %" PRId64 " ratings in trials that are not done.\n", r->not_done);
+        printf("Left out, ratings in trials that are not done: %" PRId64 ".\n", r->not_done);
     if (r->no_condition)
-        printf("Left out: %" PRId64 " ratings that belong to no option.\n", r->no_condition);
+        printf("Left out, ratings that belong to no option: %" PRId64 ".\n", r->no_condition);
     if (r->more)
-        printf("Left out: %" PRId64 " ratings after a session's first two.\n", r->more);
+        printf("Left out, ratings after a session's first two: %" PRId64 ".\n", r->more);
 }
 
 static void ttest_json(struct json *json, const char *key, const struct stat_ttest *t)

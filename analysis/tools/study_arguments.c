@@ -69,7 +69,7 @@ void study_title_json(struct json *json, const struct sample *sample)
 void study_notes(const struct sample *sample)
 {
     if (sample->left_out_simulated)
-        printf("Left out: %zu simulated sessions (--simulated analyses them).\n", sample->left_out_simulated);
+        printf("Left out, simulated sessions (--simulated analyses them): %zu.\n", sample->left_out_simulated);
     for (size_t i = 0; i < sample->session_count; i++) {
         const struct sample_session *s = &sample->sessions[i];
         if (s->excluded)
