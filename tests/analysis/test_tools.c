@@ -1,0 +1,379 @@
+// fovstats as a user meets it: numbers against R, text against golden files, one sentence for each wrong use.
+#include "program.h"
+#include "reference.h"
+#include "study_file.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+static const char fovstats[] = BUILD_DIR "/bin/fovstats";
+
+// A folder of the test's own; study files are named within it.
+static int enter_folder(void **state)
+{
+    static char folder[] = "/tmp/fovstats-test-XXXXXX";
+    *state = mkdtemp(folder);
+    return *state && chdir(folder) == 0 ? 0 : -1;
+}
+
+static int leave_folder(void **state)
+{
+    const char *rm[] = {"/bin/rm", "-rf", *state, NULL};
+    struct program_result r = program_run(rm, NULL);
+    program_free(&r);
+    return 0;
+}
+
+#define FOVSTATS(...) program_run((const char *const[]){fovstats, __VA_ARGS__, NULL}, NULL)
+
+static double expected(const char *name)
+{
+    FILE *file = reference_open("small_study.csv");
+    char line[256];
+    double value = (double)NAN;
+    while (fgets(line, sizeof line, file)) {
+        char *rest = line;
+        if (strcmp(reference_field(&rest, ','), name) == 0)
+            value = strtod(rest, NULL);
+    }
+    fclose(file);
+    assert_true(!isnan(value));
+    return value;
+}
+
+// The number after the first "key": that follows the first `after` in a JSON text.
+static double json_after(const char *json, const char *after, const char *key)
+{
+    char quoted[64];
+    snprintf(quoted, sizeof quoted, "\"%s\":", key);
+    const char *at = strstr(json, after);
+    if (!at || !(at = strstr(at, quoted)))
+        fail_msg("no %s after %s in %s", key, after, json);
+    return strtod(at + strlen(quoted), NULL);
+}
+
+static void expect_number(const char *json, const char *after, const char *key, const char *name)
+{
+    double got = json_after(json, after, key), want = expected(name);
+    if (!reference_close(got, want, 1e-12))
+        fail_msg("%s: %.17g, R %.17g", name, got, want);
+}
+
+static void expect_golden(const char *text, const char *name)
+{
+    char path[512];
+    static char golden[65536];
+    snprintf(path, sizeof path, "%s/tests/analysis/golden/%s", SOURCE_DIR, name);
+    FILE *file = fopen(path, "r");
+    if (!file)
+        fail_msg("%s is missing; it should read:\n%s", path, text);
+    golden[fread(golden, 1, sizeof golden - 1, file)] = '\0';
+    fclose(file);
+    assert_string_equal(text, golden);
+}
+
+// --- binom ---
+
+static void binom_prints(void **state)
+{
+    (void)state;
+    struct program_result r = FOVSTATS("binom", "6", "22");
+    assert_int_equal(r.code, 0);
+    expect_golden(r.out, "binom.txt");
+    assert_string_equal(r.err, "");
+    program_free(&r);
+    r = FOVSTATS("binom", "4", "19", "--json");
+    assert_int_equal(strncmp(r.out, "{\"k\":4,\"n\":19,\"p0\":0.5,\"p_value\":", 33), 0);
+    expect_number(r.out, "{", "p_value", "cell2.p_value");
+    expect_number(r.out, "{", "ci_low", "cell2.ci_low");
+    expect_number(r.out, "{", "ci_high", "cell2.ci_high");
+    assert_true(json_after(r.out, "{", "null_low") == 5 && json_after(r.out, "{", "null_high") == 14);
+    assert_true(reference_close(json_after(r.out, "{", "estimate"), 4.0 / 19, 1e-15));
+    program_free(&r);
+    r = FOVSTATS("binom", "3", "10", "--p", "0.2", "--alternative", "greater", "--conf", "0.9", "--json");
+    assert_int_equal(r.code, 0);
+    // R: binom.test(3, 10, 0.2, "greater", 0.9)
+    assert_true(reference_close(json_after(r.out, "{", "p_value"), 0.32220047360000004, 1e-12));
+    assert_true(json_after(r.out, "{", "ci_high") == 1);
+    program_free(&r);
+}
+
+static void expect_sentence(struct program_result r, int code, const char *part)
+{
+    if (r.code != code || !strstr(r.err, part) || r.out[0])
+        fail_msg("exit %d, \"%s\", out \"%s\"; expected exit %d and \"%s\"", r.code, r.err, r.out, code, part);
+    const char *end = strchr(r.err, '\n');
+    assert_true(end && end[1] == '\0'); // one line
+    program_free(&r);
+}
+
+static void wrong_use(void **state)
+{
+    (void)state;
+    expect_sentence(program_run((const char *const[]){fovstats, NULL}, NULL), 2, "which subcommand?");
+    expect_sentence(FOVSTATS("binomial"), 2, "no subcommand \"binomial\"");
+    expect_sentence(FOVSTATS("binom"), 2, "needs K and N");
+    expect_sentence(FOVSTATS("binom", "1", "2", "3"), 2, "needs K and N");
+    expect_sentence(FOVSTATS("binom", "23", "22"), 2, "K is 23 but cannot exceed N, which is 22");
+    expect_sentence(FOVSTATS("binom", "-1", "22"), 2, "K is \"-1\"");
+    expect_sentence(FOVSTATS("binom", "x", "22"), 2, "K is \"x\"");
+    expect_sentence(FOVSTATS("binom", "6", "22.5"), 2, "N is \"22.5\"");
+    expect_sentence(FOVSTATS("binom", "0", "0"), 2, "N is \"0\"");
+    expect_sentence(FOVSTATS("binom", "99999999999999999999", "22"), 2, "K is \"99999999999999999999\"");
+    expect_sentence(FOVSTATS("binom", "1", "99999999999999999999"), 2, "N is \"99999999999999999999\"");
+    expect_sentence(FOVSTATS("binom", "1", "1000000001"), 2, "from 1 to 1000000000");
+    expect_sentence(FOVSTATS("binom", "1", "2", "--p", "1.5"), 2, "--p is 1.5 but must be from 0 to 1");
+    expect_sentence(FOVSTATS("binom", "1", "2", "--p", "-0.1"), 2, "--p is -0.1");
+    expect_sentence(FOVSTATS("binom", "1", "2", "--p", "nan"), 2, "--p is \"nan\" but must be a number");
+    expect_sentence(FOVSTATS("binom", "1", "2", "--p", "half"), 2, "--p is \"half\" but must be a number");
+    expect_sentence(FOVSTATS("binom", "1", "2", "--p", "1e999"), 2, "--p is \"1e999\" but must be a number");
+    expect_sentence(FOVSTATS("binom", "1", "2", "--conf", "0"), 2, "--conf is 0 but must lie between 0 and 1");
+    expect_sentence(FOVSTATS("binom", "1", "2", "--conf", "1"), 2, "--conf is 1 but must lie between 0 and 1");
+    expect_sentence(FOVSTATS("binom", "1", "2", "--conf"), 2, "--conf needs a value");
+    expect_sentence(FOVSTATS("binom", "1", "2", "--alternative", "both"), 2, "--alternative is \"both\"");
+    expect_sentence(FOVSTATS("binom", "1", "2", "--quiet"), 2, "--quiet is not an option");
+    expect_sentence(FOVSTATS("choices"), 2, "needs at least one study file");
+    expect_sentence(FOVSTATS("choices", "x.db", "--conf", "1"), 2, "--conf is 1");
+    expect_sentence(FOVSTATS("report", "x.db"), 2, "needs -o FILE.html");
+    expect_sentence(FOVSTATS("report", "x.db", "-o"), 2, "-o needs a value");
+}
+
+static void help_everywhere(void **state)
+{
+    (void)state;
+    const char *names[] = {"binom", "choices", "ratings", "frames", "report"};
+    struct program_result all = FOVSTATS("--help");
+    for (int i = 0; i < 5; i++) {
+        struct program_result r = FOVSTATS(names[i], "--help");
+        assert_int_equal(r.code, 0);
+        assert_non_null(strstr(r.out, names[i]));
+        assert_int_equal(strncmp(r.out, "usage: fovstats ", 16), 0);
+        assert_non_null(strstr(all.out, names[i]));
+        program_free(&r);
+    }
+    program_free(&all);
+}
+
+// --- study files that cannot be read ---
+
+static void unreadable_files(void **state)
+{
+    (void)state;
+    const char *commands[] = {"choices", "ratings", "frames"};
+    study_file_sql("other.db", "CREATE TABLE t(x); INSERT INTO t VALUES(1)");
+    study_file_make("newer.db", &(struct study_desc){0});
+    study_file_sql("newer.db", "PRAGMA user_version = 999");
+    study_file_make("older.db", &(struct study_desc){0});
+    study_file_sql("older.db", "PRAGMA user_version = 0");
+    study_file_make("empty.db", &(struct study_desc){.empty = true});
+    study_file_make("bare.db", &(struct study_desc){.bare = true});
+    study_file_make("simulated.db", &(struct study_desc){.simulated = true});
+    study_file_make("real.db", &(struct study_desc){0});
+    study_file_make("torn.db", &(struct study_desc){0});
+    assert_int_equal(truncate("torn.db", 6000), 0);
+    FILE *file = fopen("text.db", "w");
+    fputs("this is not a database, but a text of more than a hundred bytes, so that SQLite looks at its head, "
+          "and sees none",
+          file);
+    fclose(file);
+    fclose(fopen("nothing.db", "w"));
+    for (int i = 0; i < 3; i++) {
+        const char *c = commands[i];
+        expect_sentence(FOVSTATS(c, "missing.db"), 1, "missing.db: there is no such file");
+        expect_sentence(FOVSTATS(c, "."), 1, ".: is not a file");
+        expect_sentence(FOVSTATS(c, "text.db"), 1, "text.db: is not a study file (not an SQLite database)");
+        expect_sentence(FOVSTATS(c, "nothing.db"), 1, "nothing.db: is not a study file (the file is empty)");
+        expect_sentence(FOVSTATS(c, "other.db"), 1, "other.db: is another program's database");
+        expect_sentence(FOVSTATS(c, "newer.db"), 1, "newer.db: was written by a newer program (version 999");
+        expect_sentence(FOVSTATS(c, "older.db"), 1, "older.db: is of an older version");
+        expect_sentence(FOVSTATS(c, "torn.db"), 1, "torn.db: the study file is damaged");
+        expect_sentence(FOVSTATS(c, "empty.db"), 1, "empty.db: the study is empty");
+        expect_sentence(FOVSTATS(c, "simulated.db"), 1,
+                        "only simulated sessions (22) are in it; add --simulated");
+        expect_sentence(FOVSTATS(c, "real.db", "--simulated"), 1, "holds sessions of people");
+        expect_sentence(FOVSTATS(c, "simulated.db", "real.db", "--simulated"), 1,
+                        "real.db: holds sessions of people");
+        expect_sentence(FOVSTATS(c, "real.db", "./real.db"), 1, "is given twice");
+    }
+    expect_sentence(FOVSTATS("choices", "bare.db"), 1, "bare.db: no choice was recorded");
+    expect_sentence(FOVSTATS("ratings", "bare.db"), 1, "bare.db: no rating of an option was recorded");
+    expect_sentence(FOVSTATS("frames", "bare.db"), 1, "bare.db: no frame was recorded");
+    const char *cp[] = {"/bin/cp", "real.db", "copy.db", NULL};
+    struct program_result r = program_run(cp, NULL);
+    program_free(&r);
+    expect_sentence(FOVSTATS("choices", "real.db", "copy.db"), 1, "is also in real.db");
+}
+
+static void reading_changes_nothing(void **state)
+{
+    (void)state;
+    study_file_make("same.db", &(struct study_desc){0});
+    study_file_sql("same.db", "PRAGMA journal_mode = WAL");
+    struct stat before, after;
+    assert_int_equal(stat("same.db", &before), 0);
+    chmod("same.db", 0444);
+    struct program_result r = FOVSTATS("choices", "same.db");
+    assert_int_equal(r.code, 0);
+    program_free(&r);
+    assert_int_equal(stat("same.db", &after), 0);
+    assert_true(before.st_size == after.st_size && before.st_mtime == after.st_mtime);
+}
+
+// --- numbers ---
+
+static void choices_agree_with_r(void **state)
+{
+    (void)state;
+    study_file_make("s.db", &(struct study_desc){0});
+    struct program_result r = FOVSTATS("choices", "s.db", "--json");
+    assert_int_equal(r.code, 0);
+    const char *cells[] = {"\"epsilon\":0.2}", "\"epsilon\":0.05}"};
+    const char *keys[] = {"p_value", "ci_low", "ci_high", "toggles_mean", "toggles_sd", "reaction_s_median"};
+    for (int cell = 0; cell < 2; cell++)
+        for (int i = 0; i < 6; i++) {
+            char name[64];
+            snprintf(name, sizeof name, "cell%d.%s", cell + 1, keys[i]);
+            expect_number(r.out, cells[cell], keys[i], name);
+        }
+    assert_true(json_after(r.out, cells[0], "k") == 6 && json_after(r.out, cells[0], "n") == 22);
+    assert_true(json_after(r.out, cells[0], "null_low") == 6 && json_after(r.out, cells[0], "null_high") == 16);
+    assert_true(json_after(r.out, cells[1], "k") == 4 && json_after(r.out, cells[1], "n") == 19);
+    assert_true(json_after(r.out, cells[1], "null_low") == 5 && json_after(r.out, cells[1], "null_high") == 14);
+    assert_true(json_after(r.out, "left_out", "not_done") == 3);
+    assert_null(strstr(r.out, "\"pooled\":true"));
+    program_free(&r);
+    r = FOVSTATS("choices", "s.db");
+    expect_golden(r.out, "choices.txt");
+    program_free(&r);
+}
+
+static void choices_say_what_they_left_out(void **state)
+{
+    (void)state;
+    study_file_make("x.db", &(struct study_desc){.excluded = true, .pooled = true});
+    struct program_result r = FOVSTATS("choices", "x.db");
+    assert_non_null(strstr(r.out, "* pooled"));
+    assert_non_null(strstr(r.out, "session 22 of participant P22 (excluded)"));
+    assert_null(strstr(r.out, "participant P01")); // the stricter rule is not applied
+    program_free(&r);
+    r = FOVSTATS("choices", "x.db", "--json");
+    assert_true(json_after(r.out, "\"epsilon\":0.2}", "k") == 7 &&
+                json_after(r.out, "\"epsilon\":0.2}", "n") == 22);
+    assert_true(json_after(r.out, "\"epsilon\":0.2}", "participants") == 21);
+    assert_true(json_after(r.out, "{", "sessions_excluded") == 1);
+    program_free(&r);
+    study_file_make("e.db", &(struct study_desc){.equal = true});
+    r = FOVSTATS("choices", "e.db", "--json");
+    assert_true(json_after(r.out, "\"epsilon\":0.2}", "n") == 21 &&
+                json_after(r.out, "\"epsilon\":0.2}", "equal") == 1);
+    program_free(&r);
+}
+
+static void simulated_is_said(void **state)
+{
+    (void)state;
+    study_file_make("sim.db", &(struct study_desc){.simulated = true});
+    const char *commands[] = {"choices", "ratings", "frames"};
+    for (int i = 0; i < 3; i++) {
+        struct program_result r = FOVSTATS(commands[i], "sim.db", "--simulated");
+        assert_int_equal(r.code, 0);
+        assert_int_equal(strncmp(r.out, "SIMULATED DATA. ", 16), 0);
+        program_free(&r);
+        r = FOVSTATS(commands[i], "sim.db", "--simulated", "--json");
+        assert_non_null(strstr(r.out, "\"simulated\":true"));
+        program_free(&r);
+    }
+}
+
+static void ratings_agree_with_r(void **state)
+{
+    (void)state;
+    study_file_make("s.db", &(struct study_desc){0});
+    struct program_result r = FOVSTATS("ratings", "s.db", "--json");
+    assert_int_equal(r.code, 0);
+    const char *places[] = {"\"first\":\"regular\"", "\"first\":\"time_warped", "first_between_groups"};
+    const char *names[] = {"regular_first", "test_first", "between"};
+    const char *keys[] = {"estimate", "t", "df", "p_value", "ci_low", "ci_high"};
+    for (int place = 0; place < 3; place++)
+        for (int i = 0; i < 6; i++) {
+            char name[64];
+            snprintf(name, sizeof name, "%s.%s", names[place], keys[i]);
+            expect_number(r.out, places[place], keys[i], name);
+        }
+    assert_true(json_after(r.out, places[0], "n") == 9 && json_after(r.out, places[1], "n") == 11);
+    assert_true(fabs(json_after(r.out, places[0], "p_value") - 0.0092) < 5e-5);
+    assert_true(fabs(json_after(r.out, places[1], "p_value") - 0.0959) < 5e-5);
+    assert_true(json_after(r.out, "{", "unpaired_sessions") == 2);
+    program_free(&r);
+    r = FOVSTATS("ratings", "s.db");
+    expect_golden(r.out, "ratings.txt");
+    program_free(&r);
+}
+
+static void frames_agree_with_r(void **state)
+{
+    (void)state;
+    study_file_make("s.db", &(struct study_desc){0});
+    struct program_result r = FOVSTATS("frames", "s.db", "--json");
+    assert_int_equal(r.code, 0);
+    const char *places[] = {"\"option\":\"regular\"", "\"option\":\"time_warped"},
+               *names[] = {"regular", "test"};
+    const char *keys[] = {"median", "p95", "p99"};
+    for (int place = 0; place < 2; place++)
+        for (int i = 0; i < 3; i++) {
+            char name[64];
+            snprintf(name, sizeof name, "%s.%s", names[place], keys[i]);
+            expect_number(r.out, places[place], keys[i], name);
+        }
+    assert_true(json_after(r.out, places[0], "frames") == 100 && json_after(r.out, places[0], "late") == 20);
+    assert_true(json_after(r.out, places[1], "late") == 0);
+    assert_true(json_after(r.out, "{", "frames") == 201);
+    program_free(&r);
+    r = FOVSTATS("frames", "s.db");
+    expect_golden(r.out, "frames.txt");
+    program_free(&r);
+}
+
+// Two labs' files: people add up, cells join.
+static void files_add_up(void **state)
+{
+    (void)state;
+    study_file_make("a.db", &(struct study_desc){0});
+    study_file_make("b.db", &(struct study_desc){0});
+    study_file_sql("b.db", "UPDATE session SET started_at = '2027' || started_at");
+    struct program_result r = FOVSTATS("choices", "a.db", "b.db", "--json");
+    assert_int_equal(r.code, 0);
+    assert_true(json_after(r.out, "{", "participants") == 44);
+    assert_true(json_after(r.out, "\"epsilon\":0.2}", "k") == 12 &&
+                json_after(r.out, "\"epsilon\":0.2}", "n") == 44);
+    assert_null(strstr(r.out, "\"pooled\":true"));
+    program_free(&r);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(binom_prints),
+        cmocka_unit_test(wrong_use),
+        cmocka_unit_test(help_everywhere),
+        cmocka_unit_test(unreadable_files),
+        cmocka_unit_test(reading_changes_nothing),
+        cmocka_unit_test(choices_agree_with_r),
+        cmocka_unit_test(choices_say_what_they_left_out),
+        cmocka_unit_test(simulated_is_said),
+        cmocka_unit_test(ratings_agree_with_r),
+        cmocka_unit_test(frames_agree_with_r),
+        cmocka_unit_test(files_add_up),
+    };
+    return cmocka_run_group_tests(tests, enter_folder, leave_folder);
+}
