@@ -1,16 +1,15 @@
 // Opening a study file read-only, and telling in a sentence why one cannot be read.
 #include "studies/store/read.h"
 
+#include "studies/store/migrate.h"
 #include "studies/store/read_private.h"
 
+#include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-
-// schema.sql; a test compares them.
-enum { APPLICATION_ID = 1180062548, USER_VERSION = 1 };
+#include <unistd.h>
 
 void store_reader_fail(struct store_reader *reader, const char *format, ...)
 {
@@ -65,40 +64,68 @@ static bool is_study(struct store_reader *reader)
     if (!pragma_int(reader, "PRAGMA application_id", &application) ||
         !pragma_int(reader, "PRAGMA user_version", &version))
         return false;
-    if (application != APPLICATION_ID) {
+    if (application != STORE_APPLICATION_ID) {
         store_reader_fail(reader, "%s: is another program's database, not a study file", reader->path);
         return false;
     }
-    if (version > USER_VERSION) {
+    if (version > STORE_VERSION) {
         store_reader_fail(reader,
                           "%s: was written by a newer program (version %d of the file, this program knows %d)",
-                          reader->path, version, USER_VERSION);
+                          reader->path, version, STORE_VERSION);
         return false;
     }
-    if (version < USER_VERSION) {
+    if (version < STORE_VERSION) {
         store_reader_fail(reader, "%s: is of an older version (%d, now %d); open it once with fovstudy resume",
-                          reader->path, version, USER_VERSION);
+                          reader->path, version, STORE_VERSION);
         return false;
     }
     return true;
 }
 
-// `immutable` is for a file on a medium where SQLite may not make its shared-memory file.
-static int open_file(struct store_reader *reader, bool immutable)
+static bool side_file(const struct store_reader *reader, const char *suffix)
 {
-    if (!immutable)
+    char *path = sqlite3_mprintf("%s%s", reader->path, suffix);
+    bool found = !path || access(path, F_OK) == 0;
+    sqlite3_free(path);
+    return found;
+}
+
+// Nobody writes where there is neither a write-ahead log nor an owner's lock. Such a file is opened as one that
+// does not change: SQLite then leaves no files of its own beside it, and a write-protected folder is no
+// hindrance. Should somebody begin to write after all, store_reader_unchanged() finds out. A path with letters
+// that mean something in a URI is opened the plain way.
+static bool at_rest(const struct store_reader *reader)
+{
+    return !side_file(reader, "-wal") && !side_file(reader, "-owner") && !strpbrk(reader->path, "?#%") &&
+           strncmp(reader->path, "//", 2) != 0;
+}
+
+static int open_file(struct store_reader *reader)
+{
+    if (!reader->at_rest)
         return sqlite3_open_v2(reader->path, &reader->db, SQLITE_OPEN_READONLY, NULL);
     char *uri = sqlite3_mprintf("file:%s?immutable=1", reader->path);
-    int code = uri && !strpbrk(reader->path, "?#%")
-                   ? sqlite3_open_v2(uri, &reader->db, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, NULL)
-                   : SQLITE_CANTOPEN;
+    int code =
+        uri ? sqlite3_open_v2(uri, &reader->db, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, NULL) : SQLITE_NOMEM;
     sqlite3_free(uri);
     return code;
 }
 
-static bool begin(struct store_reader *reader, bool immutable)
+bool store_reader_unchanged(struct store_reader *reader)
 {
-    int code = open_file(reader, immutable);
+    struct stat now;
+    const struct stat *then = &reader->info;
+    if (!reader->at_rest ||
+        (stat(reader->path, &now) == 0 && now.st_size == then->st_size && now.st_ino == then->st_ino &&
+         now.st_mtim.tv_sec == then->st_mtim.tv_sec && now.st_mtim.tv_nsec == then->st_mtim.tv_nsec))
+        return true;
+    store_reader_fail(reader, "%s: was changed while it was read; run this again", reader->path);
+    return false;
+}
+
+static bool begin(struct store_reader *reader)
+{
+    int code = open_file(reader);
     // One transaction for all calls: a session that is still being written cannot change between them.
     if (code == SQLITE_OK)
         code = sqlite3_exec(reader->db, "PRAGMA query_only = ON; BEGIN; SELECT count(*) FROM sqlite_schema",
@@ -109,39 +136,25 @@ static bool begin(struct store_reader *reader, bool immutable)
     return false;
 }
 
-// Without a write-ahead log beside it the file is whole by itself.
-static bool has_log(const char *path)
-{
-    struct stat info;
-    char *log = sqlite3_mprintf("%s-wal", path);
-    bool found = log && stat(log, &info) == 0 && info.st_size > 0;
-    sqlite3_free(log);
-    return found;
-}
-
 static bool open_reader(struct store_reader *reader)
 {
-    struct stat info;
-    if (stat(reader->path, &info) != 0) {
-        store_reader_fail(reader, "%s: there is no such file", reader->path);
+    if (stat(reader->path, &reader->info) != 0) {
+        if (errno == ENOENT)
+            store_reader_fail(reader, "%s: there is no such file", reader->path);
+        else
+            store_reader_fail(reader, "%s: cannot be opened: %s", reader->path, strerror(errno));
         return false;
     }
-    if (!S_ISREG(info.st_mode)) {
+    if (!S_ISREG(reader->info.st_mode)) {
         store_reader_fail(reader, "%s: is not a file", reader->path);
         return false;
     }
-    if (info.st_size == 0) {
+    if (reader->info.st_size == 0) {
         store_reader_fail(reader, "%s: is not a study file (the file is empty)", reader->path);
         return false;
     }
-    bool ok = begin(reader, false);
-    if (!ok && reader->db && (sqlite3_errcode(reader->db) & 0xff) == SQLITE_CANTOPEN &&
-        !has_log(reader->path)) {
-        sqlite3_close(reader->db);
-        reader->db = NULL;
-        ok = begin(reader, true);
-    }
-    return ok && is_study(reader);
+    reader->at_rest = at_rest(reader);
+    return begin(reader) && is_study(reader);
 }
 
 struct store_reader *store_reader_open(const char *path, char *error, size_t error_size)

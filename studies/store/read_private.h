@@ -3,15 +3,21 @@
 #define STUDIES_STORE_READ_PRIVATE_H
 
 #include <sqlite3.h>
+#include <stdbool.h>
+#include <sys/stat.h>
 
 struct store_reader {
     sqlite3 *db;
     char *path;
     char error[512];
+    bool at_rest;     // nobody wrote when it was opened
+    struct stat info; // as it was then
 };
 
 void store_reader_fail(struct store_reader *reader, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
+// False with a sentence where the file is no longer the one that was opened.
+bool store_reader_unchanged(struct store_reader *reader);
 void store_reader_fail_sqlite(struct store_reader *reader, int code);
 
 #endif

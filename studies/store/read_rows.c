@@ -37,7 +37,7 @@ static bool read_rows(struct store_reader *reader, const char *sql, row_fn row, 
         going = false;
     }
     sqlite3_finalize(statement);
-    return going;
+    return going && store_reader_unchanged(reader);
 }
 
 static const char *text(sqlite3_stmt *statement, int column)

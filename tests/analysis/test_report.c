@@ -1,0 +1,301 @@
+// The report: whole, self-contained, escaped, branded; and how a figure becomes part of a page.
+#include "analysis/report/figure.h"
+#include "program.h"
+#include "study_file.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+static const char fovstats[] = BUILD_DIR "/bin/fovstats";
+
+static int enter_folder(void **state)
+{
+    static char folder[] = "/tmp/fovstats-test-XXXXXX";
+    *state = mkdtemp(folder);
+    return *state && chdir(folder) == 0 ? 0 : -1;
+}
+
+static int leave_folder(void **state)
+{
+    const char *rm[] = {"/bin/rm", "-rf", *state, NULL};
+    struct program_result r = program_run(rm, NULL);
+    program_free(&r);
+    return 0;
+}
+
+static char *slurp(const char *path)
+{
+    FILE *file = fopen(path, "r");
+    if (!file)
+        return NULL;
+    char *text = calloc(1, 4 << 20);
+    assert_non_null(text);
+    assert_true(fread(text, 1, (4 << 20) - 1, file) > 0);
+    fclose(file);
+    return text;
+}
+
+static size_t count(const char *text, const char *part)
+{
+    size_t n = 0;
+    for (; (text = strstr(text, part)); text += strlen(part))
+        n++;
+    return n;
+}
+
+static char *report(const struct study_desc *desc)
+{
+    unlink("r.html");
+    study_file_make("s.db", desc);
+    const char *argv[] = {fovstats, "report", "s.db", "-o", "r.html", desc->simulated ? "--simulated" : NULL,
+                          NULL};
+    struct program_result r = program_run(argv, NULL);
+    if (r.code != 0 || r.err[0])
+        fail_msg("exit %d: %s", r.code, r.err);
+    program_free(&r);
+    char *page = slurp("r.html");
+    assert_non_null(page);
+    return page;
+}
+
+// Every tag that is opened is closed, in order. Void elements of HTML are known; SVG closes its own with "/>".
+static void expect_balanced(const char *page)
+{
+    static const char *const empty[] = {"meta", "link", "br", "!DOCTYPE", NULL};
+    char stack[64][24];
+    size_t depth = 0;
+    for (const char *at = strchr(page, '<'); at; at = strchr(at + 1, '<')) {
+        char name[24] = "";
+        bool closing = at[1] == '/';
+        sscanf(at + 1 + closing, "%23[^ >\n/]", name);
+        const char *end = strchr(at, '>');
+        assert_non_null(end);
+        bool alone = end[-1] == '/';
+        for (int i = 0; empty[i]; i++)
+            alone = alone || strcmp(name, empty[i]) == 0;
+        if (alone)
+            continue;
+        if (closing) {
+            if (depth == 0 || strcmp(stack[depth - 1], name) != 0)
+                fail_msg("</%s> closes <%s>", name, depth ? stack[depth - 1] : "");
+            depth--;
+        } else {
+            assert_true(depth < 64);
+            strcpy(stack[depth++], name);
+        }
+    }
+    assert_int_equal(depth, 0);
+}
+
+// No id twice, and every reference has its id.
+static void expect_unique_ids(const char *page)
+{
+    for (const char *at = page; (at = strstr(at, " id=")); at++) {
+        char mark[96];
+        const char *value = at + 5, quote = at[4];
+        size_t length = strcspn(value, quote == '"' ? "\"" : "'");
+        assert_true(length < 64);
+        snprintf(mark, sizeof mark, " id=%c%.*s%c", quote, (int)length, value, quote);
+        if (count(page, mark) != 1)
+            fail_msg("%s stands %zu times", mark, count(page, mark));
+    }
+    for (const char *at = page; (at = strstr(at, "href='#")); at++) {
+        char mark[96];
+        snprintf(mark, sizeof mark, " id='%.*s'", (int)strcspn(at + 7, "'"), at + 7);
+        assert_int_equal(count(page, mark), 1);
+    }
+}
+
+static void expect_self_contained(const char *page)
+{
+    assert_null(strstr(page, "<script"));
+    assert_null(strstr(page, "<img"));
+    assert_null(strstr(page, " src=\""));
+    assert_null(strstr(page, "@import"));
+    assert_null(strstr(page, "<?xml"));
+    // Addresses are the names of SVG's own vocabularies only.
+    assert_int_equal(count(page, "http://") + count(page, "https://"),
+                     count(page, "xmlns=\"http://www.w3.org/2000/svg\"") +
+                         count(page, "xmlns:xlink=\"http://www.w3.org/1999/xlink\""));
+    expect_balanced(page);
+    expect_unique_ids(page);
+}
+
+static void a_study_of_people(void **state)
+{
+    (void)state;
+    char *page = report(&(struct study_desc){0});
+    expect_self_contained(page);
+    assert_int_equal(count(page, "<svg class=\"wide\""), 3);
+    assert_int_equal(count(page, "<svg class=\"narrow\""), 3);
+    assert_null(strstr(page, "SIMULATED"));
+    static const char *const parts[] = {
+        "<title>small: study report</title>",
+        "test device",
+        "driver 1",
+        "90 Hz, real clock",
+        "640 \u00d7 720 px per eye",
+        ">6/22</text>",
+        ">4/19</text>",
+        ">0.0525<",
+        ">0.0192<",
+        "6 to 16",
+        "5 to 14",
+        "<td>0.0959</td>",
+        "<td>0.0092</td>",
+        "t(8) = -3.411",
+        "often (11)",
+        "never (11)",
+        "201 frames, 20 of them late",
+        "2 (50.0\u00a0%)",
+        "answers to trials that are not done: 3",
+        "Of 2 cells, 1 lies outside",
+        "<h2>Definitions</h2>",
+    };
+    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++)
+        if (!strstr(page, parts[i]))
+            fail_msg("the report lacks \"%s\"", parts[i]);
+    free(page);
+}
+
+static void the_same_twice(void **state)
+{
+    (void)state;
+    char *a = report(&(struct study_desc){0}), *b = report(&(struct study_desc){0});
+    assert_string_equal(a, b);
+    free(a);
+    free(b);
+}
+
+static void simulated_is_branded(void **state)
+{
+    (void)state;
+    char *page = report(&(struct study_desc){.simulated = true});
+    assert_non_null(strstr(page, "<title>SIMULATED DATA "));
+    assert_non_null(strstr(page, "<h1>SIMULATED DATA "));
+    assert_non_null(strstr(page, "<div class=\"brand\""));
+    expect_self_contained(page);
+    free(page);
+}
+
+static void hostile_texts_stay_texts(void **state)
+{
+    (void)state;
+    char *page = report(&(struct study_desc){.hostile = true});
+    expect_self_contained(page);
+    assert_null(strstr(page, "<svg onload"));
+    assert_null(strstr(page, "<i>How"));
+    assert_null(strstr(page, "<b>"));
+    assert_non_null(strstr(page, "&lt;/title&gt;&lt;script&gt;alert(3)&lt;/script&gt;"));
+    assert_int_not_equal(access("hacked", F_OK), 0);
+    free(page);
+}
+
+static void exclusions_and_pooling_are_said(void **state)
+{
+    (void)state;
+    char *page = report(&(struct study_desc){.excluded = true, .pooled = true, .equal = true});
+    expect_self_contained(page);
+    assert_non_null(strstr(page, "* Pooled:"));
+    assert_non_null(strstr(page, "half of the gaze was lost"));
+    assert_non_null(strstr(page, "stricter (not applied)"));
+    assert_non_null(strstr(page, "excluded sessions: 1"));
+    free(page);
+}
+
+static void what_is_missing_is_said(void **state)
+{
+    (void)state;
+    char *page = report(&(struct study_desc){.bare = true});
+    expect_self_contained(page);
+    assert_int_equal(count(page, "<svg"), 0);
+    assert_non_null(strstr(page, "No choice was recorded"));
+    assert_non_null(strstr(page, "No rating of an option was recorded"));
+    assert_non_null(strstr(page, "No frame was recorded"));
+    free(page);
+}
+
+static void fails(const char *path, const char *db, const char *out, const char *part)
+{
+    const char *argv[] = {fovstats, "report", db, "-o", out, NULL};
+    struct program_result r = program_run(argv, path);
+    if (r.code != 1 || !strstr(r.err, part))
+        fail_msg("exit %d, \"%s\"; expected \"%s\"", r.code, r.err, part);
+    program_free(&r);
+}
+
+static void failures_write_nothing(void **state)
+{
+    (void)state;
+    unlink("f.html");
+    study_file_make("s.db", &(struct study_desc){0});
+    fails("/nonexistent", "s.db", "f.html", "gnuplot is not installed");
+    fails(NULL, "missing.db", "f.html", "missing.db: there is no such file");
+    assert_int_not_equal(access("f.html", F_OK), 0);
+    fails(NULL, "s.db", "no/such/folder/f.html", "no/such/folder/f.html: cannot be written");
+    study_file_make("e.db", &(struct study_desc){.empty = true});
+    fails(NULL, "e.db", "f.html", "e.db: the study is empty");
+    assert_int_not_equal(access("f.html", F_OK), 0);
+    // A gnuplot that fails: its words are passed on, and an older report stays.
+    FILE *file = fopen("gnuplot", "w");
+    fputs("#!/bin/sh\necho out of ink\nexit 3\n", file);
+    fclose(file);
+    const char *chmod[] = {"/bin/chmod", "+x", "gnuplot", NULL};
+    struct program_result r = program_run(chmod, NULL);
+    program_free(&r);
+    file = fopen("f.html", "w");
+    fputs("older", file);
+    fclose(file);
+    char folder[256];
+    assert_non_null(getcwd(folder, sizeof folder));
+    fails(folder, "s.db", "f.html", "gnuplot could not draw a figure (status 3): out of ink");
+    char *older = slurp("f.html");
+    assert_string_equal(older, "older");
+    free(older);
+}
+
+static void a_figure_becomes_part_of_a_page(void **state)
+{
+    (void)state;
+    struct figure_text text = {"f1", "A <title>", "Words & more", "wide"};
+    char *svg = figure_embeddable(
+        "<?xml version=\"1.0\"?>\n<!DOCTYPE svg>\n<svg \n width=\"5\" viewBox=\"0 0 1 2\"\n>\n"
+        "<title>Gnuplot</title><desc>by</desc>\n<g id=\"a\"><use xlink:href='#b'/>"
+        "<rect id='b' fill=\"url(#a)\"/><text> id='x' url(#y)</text></g></svg>\n",
+        &text);
+    assert_non_null(svg);
+    assert_string_equal(
+        svg, "<svg class=\"wide\" xmlns=\"http://www.w3.org/2000/svg\" "
+             "xmlns:xlink=\"http://www.w3.org/1999/xlink\" viewBox=\"0 0 1 2\" role=\"img\" "
+             "aria-labelledby=\"f1-title f1-desc\">\n<title id=\"f1-title\">A &lt;title&gt;</title>\n"
+             "<desc id=\"f1-desc\">Words &amp; more</desc>\n\n<g id=\"f1-a\"><use "
+             "xlink:href='#f1-b'/><rect id='f1-b' fill=\"url(#f1-a)\"/><text> id='x' "
+             "url(#y)</text></g></svg>\n");
+    free(svg);
+    assert_null(figure_embeddable("no picture", &text));
+    assert_null(figure_embeddable("<svg>", &text));
+    assert_null(figure_embeddable("<svg></svg>", &text));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_study_of_people),
+        cmocka_unit_test(the_same_twice),
+        cmocka_unit_test(simulated_is_branded),
+        cmocka_unit_test(hostile_texts_stay_texts),
+        cmocka_unit_test(exclusions_and_pooling_are_said),
+        cmocka_unit_test(what_is_missing_is_said),
+        cmocka_unit_test(failures_write_nothing),
+        cmocka_unit_test(a_figure_becomes_part_of_a_page),
+    };
+    return cmocka_run_group_tests(tests, enter_folder, leave_folder);
+}
