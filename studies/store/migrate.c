@@ -104,10 +104,10 @@ enum store_result migrate_check_tables(struct store *store, const struct migrate
                                        struct store_error *error)
 {
     // The same schema in memory tells which columns there must be.
-    static const char columns[] = "SELECT t.name || '.' || c.name FROM sqlite_schema AS t, "
-                                  "pragma_table_info(t.name) AS c WHERE t.type = 'table' ORDER BY 1";
-    static const char wanted[] = "SELECT count(*) FROM sqlite_schema AS t, pragma_table_info(t.name) AS c "
-                                 "WHERE t.type = 'table' AND t.name || '.' || c.name = ?1";
+    static const char columns[] =
+        "SELECT t.name, c.name FROM sqlite_schema AS t, pragma_table_info(t.name) AS c "
+        "WHERE t.type = 'table'";
+    static const char wanted[] = "SELECT 1 FROM pragma_table_info(?1) WHERE name = ?2";
     sqlite3 *model = NULL;
     sqlite3_stmt *list = NULL, *find = NULL;
     int code = sqlite3_open(":memory:", &model);
@@ -123,14 +123,17 @@ enum store_result migrate_check_tables(struct store *store, const struct migrate
         result = sql_failure(store, sqlite3_extended_errcode(store->db), error);
     }
     while (result == STORE_OK && sqlite3_step(list) == SQLITE_ROW) {
-        const char *name = (const char *)sqlite3_column_text(list, 0);
-        sqlite3_bind_text(find, 1, name, -1, SQLITE_STATIC);
-        if (sqlite3_step(find) != SQLITE_ROW) {
-            result = sql_failure(store, sqlite3_extended_errcode(store->db), error);
-        } else if (sqlite3_column_int64(find, 0) != 1) {
-            sql_say(error, "%s: the database is damaged (%s is missing); restore it from a copy", store->path,
-                    name);
+        const char *table = (const char *)sqlite3_column_text(list, 0);
+        const char *column = (const char *)sqlite3_column_text(list, 1);
+        sqlite3_bind_text(find, 1, table, -1, SQLITE_STATIC);
+        sqlite3_bind_text(find, 2, column, -1, SQLITE_STATIC);
+        code = sqlite3_step(find);
+        if (code == SQLITE_DONE) {
+            sql_say(error, "%s: the database is damaged (%s.%s is missing); restore it from a copy",
+                    store->path, table, column);
             result = STORE_REFUSED;
+        } else if (code != SQLITE_ROW) {
+            result = sql_failure(store, sqlite3_extended_errcode(store->db), error);
         }
         sqlite3_reset(find);
     }

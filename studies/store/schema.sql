@@ -241,10 +241,12 @@ CREATE TABLE frame (
     gaze_age_us REAL, -- of that sample at start_ns
     fovea TEXT CHECK (fovea IS NULL OR json_valid(fovea)), -- JSON {"left":[x,y],"right":[x,y]}, degrees, as used
     fovea_source TEXT CHECK (fovea_source IN ('gaze', 'target', 'fixed', 'lost')),
-    effective TEXT CHECK (effective IS NULL OR json_valid(effective)), -- JSON of what was really rendered, where it differs from condition
+    -- JSON of what was really rendered, where it differs from the condition
+    effective TEXT CHECK (effective IS NULL OR json_valid(effective)),
     target_x_deg REAL, -- the fixation target
     target_y_deg REAL,
-    head_pose TEXT CHECK (head_pose IS NULL OR json_valid(head_pose)), -- JSON {"position":[x,y,z],"orientation":[x,y,z,w]}, metres, world
+    -- JSON {"position":[x,y,z],"orientation":[x,y,z,w]}, metres, world
+    head_pose TEXT CHECK (head_pose IS NULL OR json_valid(head_pose)),
     shaded_px INTEGER, -- pixels of both eyes shaded
     triangles INTEGER  -- both eyes, after culling
 ) STRICT;

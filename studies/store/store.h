@@ -66,7 +66,7 @@ struct store_desc {
     const char *path;
     enum store_access access;
     uint32_t busy_ms;       // how long a write waits for another program's; 0: 5000
-    uint32_t flush_ms;      // longest time a pushed row waits for its commit, 1..1000; 0: 500
+    uint32_t flush_ms;      // longest time a pushed row waits for its commit, 1..1000; 0: 250
     uint32_t gaze_capacity; // samples that may wait; 0: 65536 (a minute at 1,000 Hz)
     uint32_t log_capacity;  // frames, exposures, events, adjust steps that may wait; 0: 16384 (three minutes at
                             // 90 Hz)

@@ -9,6 +9,18 @@
 
 #include <cmocka.h>
 
+// Whether timings mean nothing.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define INSTRUMENTED 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define INSTRUMENTED 1
+#endif
+#endif
+#ifndef INSTRUMENTED
+#define INSTRUMENTED 0
+#endif
+
 enum { FIXTURE_TRIALS = 9, FIXTURE_CONDITIONS = 3 };
 
 struct fixture {
@@ -16,7 +28,8 @@ struct fixture {
     char path[96]; // of the study file, not made yet
 };
 
-int fixture_setup(void **state); // cmocka's: *state is a struct fixture
+int fixture_setup(void **state);      // cmocka's: *state is a struct fixture
+int fixture_setup_disk(void **state); // on a disk, not in memory
 int fixture_teardown(void **state);
 
 // Fails the test with the sentence where the result is another one.

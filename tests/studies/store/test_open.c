@@ -168,7 +168,7 @@ static void test_damaged(void **state)
     free(bytes);
     // A table is missing.
     assert_int_equal(outsider(fixture->path, "DROP TABLE gaze_check"), 0);
-    refuse(fixture->path, STORE_WRITE, "gaze_check.accuracy_deg is missing");
+    refuse(fixture->path, STORE_WRITE, "gaze_check.id is missing");
 }
 
 static void test_check_finds_damage(void **state)
