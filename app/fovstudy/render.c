@@ -52,7 +52,8 @@ static const struct option_spec specs[] = {
     [OPTION_OUT] = {"out", "DIR", "folder for the pictures, made where missing: NNNN-left.png, NNNN-right.png"},
     [OPTION_FRAMES] = {"frames", "N", "frames to walk, 1/90 s each (1)"},
     [OPTION_SIZE] = {"size", "WxH", "pixels per eye (1280x1440)"},
-    [OPTION_GAZE] = {"gaze", "centre|script|X,Y", "where the eyes look; degrees, right and up positive (centre)"},
+    [OPTION_GAZE] = {"gaze", "centre|script|X,Y",
+                     "where the eyes look; degrees, right and up positive (centre)"},
     [OPTION_FOV] = {"fov", "DEG", "vertical field of view (100)"},
     [OPTION_START] = {"start", "S", "where on the path to begin, seconds (0)"},
     [OPTION_STILL] = {"still", NULL, "keep the camera where it starts"},
@@ -138,7 +139,8 @@ static int read_options(int argc, char **argv, struct request *r)
             return EXIT_USAGE;
         if (i == OPTIONS_HELP) {
             options_help(stdout, "render --mode MODE[:p=v,...] --scene NAME|FILE [--out DIR] [options]",
-                         "Walks a scene's camera path in one mode and writes the last frame, one PNG per eye.", specs);
+                         "Walks a scene's camera path in one mode and writes the last frame, one PNG per eye.",
+                         specs);
             return EXIT_DONE;
         }
         if (i == OPTIONS_WORD)
@@ -191,7 +193,8 @@ static bool write_picture(const struct request *r, uint64_t number, int eye, con
                           const uint8_t *pixels)
 {
     char path[4096];
-    snprintf(path, sizeof path, "%s/%04llu-%s%s.png", r->out, (unsigned long long)number, eye ? "right" : "left", what);
+    snprintf(path, sizeof path, "%s/%04llu-%s%s.png", r->out, (unsigned long long)number,
+             eye ? "right" : "left", what);
     if (png_write(path, r->width, r->height, channels, pixels))
         return true;
     fprintf(stderr, "fovstudy: cannot write %s: %s\n", path, strerror(errno));
@@ -205,7 +208,8 @@ static bool write_frame(const struct request *r, struct renderer_option *option,
     for (int eye = 0; eye < EYES && ok; eye++) {
         ok = renderer_read(option, eye, pixels) && write_picture(r, number, eye, "", 4, pixels);
         if (ok && r->redraw_map)
-            ok = renderer_read_redraw_map(option, eye, pixels) && write_picture(r, number, eye, "-redraw", 1, pixels);
+            ok = renderer_read_redraw_map(option, eye, pixels) &&
+                 write_picture(r, number, eye, "-redraw", 1, pixels);
     }
     free(pixels);
     return ok;
@@ -214,9 +218,11 @@ static bool write_frame(const struct request *r, struct renderer_option *option,
 static void print_times(const struct request *r, const struct frame_stats *s)
 {
     double all = 2.0 * r->width * r->height;
-    printf("frame %llu: %.2f ms on the GPU, %.2f ms on the CPU; shaded %llu px (%.2f %%), %llu triangles in %llu submodels\n",
+    printf("frame %llu: %.2f ms on the GPU, %.2f ms on the CPU; shaded %llu px (%.2f %%), %llu triangles in "
+           "%llu submodels\n",
            (unsigned long long)r->frames - 1, s->gpu_ms, s->cpu_ms, (unsigned long long)s->shaded_px,
-           100 * (double)s->shaded_px / all, (unsigned long long)s->triangles, (unsigned long long)s->submodels);
+           100 * (double)s->shaded_px / all, (unsigned long long)s->triangles,
+           (unsigned long long)s->submodels);
     for (uint32_t i = 0; i < s->timer_count; i++)
         printf("  %-20s %8.3f ms\n", s->timers[i].name, s->timers[i].ms);
 }

@@ -9,7 +9,8 @@ enum { NO_TRIAL = -1 };
 
 struct stage {
     struct stage_desc desc;
-    int64_t trial; // prepared, or NO_TRIAL
+    struct mode_choice reference_choice; // desc.reference points here, where there is one
+    int64_t trial;                       // prepared, or NO_TRIAL
     struct stage_scene *scene;
     struct renderer_option *options[2];
     struct renderer_option *reference;
@@ -22,6 +23,10 @@ struct stage *stage_create(const struct stage_desc *desc)
     if (!stage)
         return NULL;
     stage->desc = *desc;
+    if (desc->reference) {
+        stage->reference_choice = *desc->reference;
+        stage->desc.reference = &stage->reference_choice;
+    }
     stage->trial = NO_TRIAL;
     return stage;
 }

@@ -29,7 +29,7 @@ struct stage_desc {
     size_t scene_count;
     struct viewing_fov fov; // of each eye
     double ipd_m;
-    const struct mode_choice *reference; // made for each trial too, to measure against; NULL: not
+    const struct mode_choice *reference; // copied; made for each trial, to measure against; NULL: not
     int moving_setting; // index of the protocol's setting that lets objects move; -1: they never do
 };
 

@@ -1,0 +1,233 @@
+// Wrong usage and bad input from the command line: one sentence, the right exit status, nothing half-written.
+#include "tests/app/command.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+static char folder[512];
+
+// One sentence on stderr that holds `about`, nothing on stdout.
+static void expect(const struct command_result *result, int status, const char *about)
+{
+    const char *newline = strchr(result->err, '\n');
+    if (result->status != status || !strstr(result->err, about) || !newline || newline[1] || result->out[0])
+        print_error("status %d (expected %d)\nstderr: %s\nstdout: %s\nexpected about: %s\n", result->status,
+                    status, result->err, result->out, about);
+    assert_int_equal(result->status, status);
+    assert_int_equal(strncmp(result->err, "fovstudy", 8), 0);
+    assert_non_null(strstr(result->err, about));
+    assert_true(newline && !newline[1]);
+    assert_int_equal(result->out[0], '\0');
+}
+
+// A copy of short.yaml with one text replaced.
+static void write_protocol(const char *name, const char *from, const char *to)
+{
+    const struct command_result *result = command("sed 's|%s|%s|' '%s/studies/protocols/short.yaml' > '%s/%s' "
+                                                  "&& ! cmp -s '%s/studies/protocols/short.yaml' "
+                                                  "'%s/%s'",
+                                                  from, to, SOURCE_DIR, folder, name, SOURCE_DIR, folder, name);
+    assert_int_equal(result->status, 0);
+}
+
+static void wrong_usage_is_exit_2(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *line, *about;
+    } cases[] = {
+        {"fovstudy", "command is missing"},
+        {"fovstudy fly", "'fly'"},
+        {"fovstudy modes --xml", "'--xml'"},
+        {"fovstudy modes extra", "'extra'"},
+        {"fovstudy modes --json=yes", "takes no value"},
+        {"fovstudy scenes -x", "'-x'"},
+        {"fovstudy check", "which protocol"},
+        {"fovstudy check a.yaml b.yaml", "'b.yaml'"},
+        {"fovstudy check a.yaml --number 0", "'0'"},
+        {"fovstudy check a.yaml --participant p", "--db"},
+        {"fovstudy run", "which protocol"},
+        {"fovstudy run a.yaml", "--db"},
+        {"fovstudy run a.yaml --db x.db", "--participant"},
+        {"fovstudy run a.yaml --db", "wants a value"},
+        {"fovstudy run a.yaml --db x.db --participant p --size 10x10", "10x10"},
+        {"fovstudy run a.yaml --db x.db --participant p --size 640", "640"},
+        {"fovstudy run a.yaml --db x.db --participant p --seed -1", "-1"},
+        {"fovstudy run a.yaml --db x.db --participant p --seed 1e3", "1e3"},
+        {"fovstudy run a.yaml --db x.db --participant p --fov nan", "nan"},
+        {"fovstudy run a.yaml --db x.db --participant p --refresh 0", "0"},
+        {"fovstudy run a.yaml --db x.db --participant p --scene town", "town"},
+        {"fovstudy run a.yaml --db x.db --participant p --attribute age", "age"},
+        {"fovstudy run a.yaml --db x.db --participant p --display headless", "--observer"},
+        {"fovstudy run a.yaml --db x.db --participant p --display none", "--observer"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
+        expect(command("%s", cases[i].line), 2, cases[i].about);
+}
+
+static void help_is_exit_0(void **state)
+{
+    (void)state;
+    static const char *const lines[] = {
+        "fovstudy --help",       "fovstudy --version",     "fovstudy run --help",    "fovstudy check --help",
+        "fovstudy modes --help", "fovstudy scenes --help", "fovstudy render --help", "fovstudy devices --help"};
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
+        const struct command_result *result = command("%s", lines[i]);
+        assert_int_equal(result->status, 0);
+        assert_true(strlen(result->out) > 10 && !result->err[0]);
+    }
+}
+
+static void tables_are_valid_json(void **state)
+{
+    (void)state;
+    static const char *const lines[] = {"modes --json", "scenes --json",
+                                        "check '" SOURCE_DIR "/studies/protocols/calibration.yaml' --json"};
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
+        const struct command_result *result =
+            command("fovstudy %s > '%s/table.json' && python3 -m json.tool '%s/table.json' > /dev/null",
+                    lines[i], folder, folder);
+        assert_int_equal(result->status, 0);
+        assert_int_equal(result->err[0], '\0');
+    }
+    assert_non_null(strstr(command("fovstudy modes")->out, "epsilon"));
+    assert_non_null(strstr(command("fovstudy scenes")->out, "triangles"));
+}
+
+// The same participant gets the same table, another one another, and all of them nine decisions and two
+// ratings.
+static void check_prints_a_participants_trials(void **state)
+{
+    (void)state;
+    char first[COMMAND_TEXT];
+    const char *line = "fovstudy check '" SOURCE_DIR "/studies/protocols/calibration.yaml' --number %d";
+    strcpy(first, command(line, 1)->out);
+    assert_true(strlen(first) > 500);
+    assert_string_equal(command(line, 1)->out, first);
+    assert_string_not_equal(command(line, 2)->out, first);
+}
+
+static void protocol_mistakes_have_their_place(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *from, *to, *about;
+    } cases[] = {
+        {"mode: time_warped", "mode: time_wrapped", "time_wrapped"},
+        {"{mode: time_warped}", "{mode: time_warped, epsilom: 0.1}", "epsilom"},
+        {"{mode: time_warped}", "{mode: time_warped, epsilon: 7}", "7"},
+        {"scenes: \\[atrium\\]", "scenes: [cathedral]", "cathedral"},
+        {"epsilon: \\[0.2, 0.05\\]", "epsilon: [0.2, many]", "many"},
+        {"reference: regular", "reference: [", ""},
+        {"seed: 1", "sead: 1", "sead"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        char place[600];
+        write_protocol("wrong.yaml", cases[i].from, cases[i].to);
+        snprintf(place, sizeof place, "%s/wrong.yaml:", folder);
+        const struct command_result *result = command("fovstudy check '%s/wrong.yaml'", folder);
+        expect(result, 1, cases[i].about);
+        const char *at = strstr(result->err, place);
+        int row = 0, column = 0;
+        assert_non_null(at);
+        assert_int_equal(sscanf(at + strlen(place), "%d:%d:", &row, &column), 2);
+        assert_true(row > 1 && column > 0);
+        expect(
+            command(
+                "fovstudy run '%s/wrong.yaml' --db '%s/never.db' --participant p --display none --observer sim",
+                folder, folder),
+            1, cases[i].about);
+    }
+    expect(command("fovstudy check '%s/no-such.yaml'", folder), 1, "no-such.yaml");
+    char path[600];
+    snprintf(path, sizeof path, "%s/never.db", folder);
+    assert_int_not_equal(access(path, F_OK), 0); // nothing was written
+}
+
+#define RUN_SHORT "fovstudy run '" SOURCE_DIR "/studies/protocols/short.yaml' --participant p "
+
+static void run_refuses_before_it_writes(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *options, *about;
+    } cases[] = {
+        {"--display none --observer sim", "measured"},
+        {"--display none --observer sim:errors=/no/such/file", "/no/such/file"},
+        {"--display none --observer person", "person"},
+        {"--display none --observer sim:threshold=-1", "threshold"},
+        {"--display none --observer sim:luck=1", "luck"},
+        {"--display telepathy --observer sim", "telepathy"},
+        {"--display headless:3 --observer sim", "headless"},
+        {"--display headless --observer sim --attribute shoe=44", "shoe"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        expect(command(RUN_SHORT "--db '%s/none.db' %s", folder, cases[i].options), 1, cases[i].about);
+        const struct command_result *result =
+            command("sqlite3 '%s/none.db' 'SELECT count(*) FROM session' 2>/dev/null", folder);
+        assert_true(result->out[0] == '\0' || result->out[0] == '0');
+    }
+}
+
+// Errors from a file let a simulated participant answer without a GPU; the parts of the file are checked.
+static void a_session_runs_without_frames(void **state)
+{
+    (void)state;
+    const struct command_result *result;
+    command(
+        "printf 'atrium,3,time_warped:epsilon=0.2\\natrium,1,time_warped:epsilon=0.05\\n' > '%s/errors.csv'",
+        folder);
+    const char *run =
+        RUN_SHORT "--db '%s/errors.db' --display none --observer sim:errors=%s/errors.csv --events -";
+    result = command(run, folder, folder);
+    expect(result, 1, "time_warped"); // the rating's option is missing
+    command("printf '# default parameters\\natrium,2,time_warped\\n' >> '%s/errors.csv'", folder);
+    result = command(run, folder, folder);
+    assert_string_equal(result->err, "");
+    assert_int_equal(result->status, 0);
+    assert_non_null(strstr(result->out, "{\"seq\":1,\"event\":\"trial\",\"t_ns\":"));
+    assert_non_null(strstr(result->out, "\"table\":\"choice\",\"row\":1"));
+    assert_non_null(strstr(result->out, "\"event\":\"end\""));
+    result =
+        command("sqlite3 '%s/errors.db' \"SELECT (SELECT count(*) FROM choice), (SELECT count(*) FROM rating), "
+                "(SELECT count(*) FROM frame), (SELECT status FROM session)\"",
+                folder);
+    assert_string_equal(result->out, "2|1|0|complete\n");
+    expect(command(run, folder, folder), 1, "p"); // the same code again
+    command("printf 'atrium,bad,regular\\n' > '%s/errors.csv'", folder);
+    expect(
+        command(
+            "fovstudy run '%s/studies/protocols/short.yaml' --participant q --db '%s/errors.db' --display none "
+            "--observer sim:errors=%s/errors.csv",
+            SOURCE_DIR, folder, folder),
+        1, "errors.csv:1");
+}
+
+static int set_up(void **state)
+{
+    (void)state;
+    command_folder("cli", folder, sizeof folder);
+    return 0;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(wrong_usage_is_exit_2),
+        cmocka_unit_test(help_is_exit_0),
+        cmocka_unit_test(tables_are_valid_json),
+        cmocka_unit_test(check_prints_a_participants_trials),
+        cmocka_unit_test(protocol_mistakes_have_their_place),
+        cmocka_unit_test(run_refuses_before_it_writes),
+        cmocka_unit_test(a_session_runs_without_frames),
+    };
+    return cmocka_run_group_tests(tests, set_up, NULL);
+}
