@@ -19,15 +19,20 @@ static const struct knob {
 } knobs[] = {
 #define KNOB(name) #name, offsetof(struct observer_parameters, name)
     {KNOB(threshold), 1e-9, 1e9, 0.02}, // our choice; the caller's metric sets its unit
-    {KNOB(slope), 0.05, 20, 1},         {KNOB(lapse), 0, 1, 0.02}, // Wichmann and Hill 2001: lapses of
-                                                                   // practised observers lie under about 5 %
-    {KNOB(side_bias), -20, 20, 0},      {KNOB(toggles_mean), 1, 100, 6}, // Franke 2021, section 8.2: more than
-                                                                         // five switches on average
+    {KNOB(slope), 0.05, 20, 1},
+    {KNOB(lapse), 0, 1, 0.02}, // Wichmann and Hill 2001: lapses of
+                               // practised observers lie under about 5 %
+    {KNOB(side_bias), -20, 20, 0},
+    {KNOB(toggles_mean), 1, 100, 6}, // Franke 2021, section 8.2: more than
+                                     // five switches on average
     {KNOB(dwell_s), 0.05, 600, 0.5}, // with six toggles of half a second a trial lasts about seven seconds
-    {KNOB(dwell_spread), 0, 3, 0.4},    {KNOB(rating_mean), -100, 100, 6.4}, // Franke 2021, section 8.2: first
-                                                                             // ratings 6.36 (sd 1.5) and 6.33
-                                                                             // (sd 2.0)
-    {KNOB(rating_sd), 0, 100, 1.75},    {KNOB(rating_drop), 0, 100, 0.5},    {KNOB(view_s), 0.05, 600, 4.5},
+    {KNOB(dwell_spread), 0, 3, 0.4},
+    {KNOB(rating_mean), -100, 100, 6.4}, // Franke 2021, section 8.2: first
+                                         // ratings 6.36 (sd 1.5) and 6.33
+                                         // (sd 2.0)
+    {KNOB(rating_sd), 0, 100, 1.75},
+    {KNOB(rating_drop), 0, 100, 0.5},
+    {KNOB(view_s), 0.05, 600, 4.5},
     {KNOB(answer_s), 0.05, 600, 1},
 #undef KNOB
 };

@@ -70,22 +70,33 @@ static uint32_t cell_level(const struct protocol_block *block, uint32_t cell, ui
     return cell % block->factors[factor].level_count;
 }
 
-// Groups of the block, its factor levels and, where cells repeat, its cells.
-static void design_block(const struct protocol_block *block, struct balance_design *design)
+// Groups of the block, its factor levels and, where cells repeat, its cells. `levels`: the weight of a factor's
+// levels.
+static void design_block(const struct protocol_block *block, uint32_t levels, struct balance_design *design)
 {
     uint32_t key[PROTOCOL_TRIALS] = {0};
     *design = (struct balance_design){.trials = protocol_block_trials(block)};
-    balance_group(design, key, 1);
+    uint32_t cells = design->trials / block->repetitions;
+    balance_group(design, key, 1, BALANCE_MUST);
     for (uint32_t f = 0; f < block->factor_count; f++) {
         for (uint32_t i = 0; i < design->trials; i++)
-            key[i] = cell_level(block, i / block->repetitions, f);
-        balance_group(design, key, block->factors[f].level_count);
+            key[i] = design->digit[i][f] = (uint16_t)cell_level(block, i / block->repetitions, f);
+        design->levels[f] = block->factors[f].level_count;
+        balance_group(design, key, design->levels[f], levels);
     }
-    if (block->repetitions > 1) {
+    design->digits = block->factor_count;
+    if (design->digits == 0) { // listed trials
         for (uint32_t i = 0; i < design->trials; i++)
-            key[i] = i / block->repetitions;
-        balance_group(design, key, design->trials / block->repetitions);
+            design->digit[i][0] = (uint16_t)(i / block->repetitions);
+        design->levels[design->digits++] = cells;
     }
+    for (uint32_t i = 0; i < design->trials; i++) {
+        design->digit[i][design->digits] = (uint16_t)(i % block->repetitions);
+        key[i] = i / block->repetitions;
+    }
+    design->levels[design->digits++] = block->repetitions;
+    if (block->repetitions > 1)
+        balance_group(design, key, cells, BALANCE_SHOULD);
 }
 
 // One of `length` combinations, each once in every run of `length` participants.
@@ -146,14 +157,15 @@ static void draw_toggle(const struct maker *maker, uint32_t index, struct draw *
     uint32_t number = maker->plan->number;
     struct balance_design design;
     uint32_t first_scene[PROTOCOL_TRIALS];
-    design_block(block, &design);
+    design_block(block, BALANCE_SHOULD, &design);
     draw->count = design.trials;
     draw_scenes(maker, index, &design, draw, first_scene);
+    design_block(block, BALANCE_MUST, &design);
 
     // Sides and scenes must not go together either. The groups are those of the first scenes, the same for all
     // four.
     if (block->scene_count > 1 && block->scene_use == PROTOCOL_ALTERNATE)
-        balance_group(&design, first_scene, block->scene_count);
+        balance_group(&design, first_scene, block->scene_count, BALANCE_MAY);
     struct random_stream sides = random_stream(maker->key, PURPOSE_SIDES, number / 4, index);
     draw->excess += balance_pairs(&design, &sides, draw->pair);
     for (uint32_t i = 0; i < draw->count; i++)

@@ -52,8 +52,9 @@ struct plan {
     uint32_t condition_count;
     struct plan_trial *trials;
     uint32_t trial_count;
-    // By how many trials the drawn scenes and sides miss "within one", summed over all groups of the worst
-    // block: 0 when every balance holds, as it does for full factorials such as the calibration study's.
+    // By how many trials what DESIGN promises is missed, summed over the worst block: scenes within one over
+    // the block; sides and first-shown options within one over the block and each factor level. 0 for every
+    // full factorial.
     uint32_t imbalance;
 };
 

@@ -77,12 +77,10 @@ char *plan_table_text(const struct plan *plan)
     for (uint32_t i = 0; i < plan->condition_count; i++)
         text_add(&text, "%9u  %s %s\n", i + 1, plan->conditions[i].mode, plan->conditions[i].parameters);
     if (plan->imbalance)
-        text_add(
-            &text,
-            "\nbalance: %u trials off what would be even; the design has no even assignment that was found\n",
-            plan->imbalance);
+        text_add(&text, "\nbalance: %u trials off what would be even; no better assignment was found\n",
+                 plan->imbalance);
     else
-        text_add(&text, "\nbalance: scenes, sides and first-shown options within one everywhere\n");
+        text_add(&text, "\nbalance: scenes, sides and first-shown options within one\n");
     return text_take(&text);
 }
 

@@ -275,9 +275,12 @@ static void test_a_decision_from_key_to_next_trial(void **state)
     assert_int_equal(rig.view.last_value, PLAN_SLOT_B);
     assert_int_equal(rig.view.done, 2);
     int64_t stored = rig.now;
-    frame_at(&rig, stored + 500 * MS - 1);
+    event_at(&rig, stored + 100 * MS, MACHINE_PAUSE, 0);
+    event_at(&rig, stored + 900 * MS, MACHINE_PAUSE, 0);
+    drain(&rig);
+    frame_at(&rig, stored + 1300 * MS - 1);
     screen(&rig, MACHINE_CONFIRMATION);
-    frame_at(&rig, stored + 500 * MS);
+    frame_at(&rig, stored + 1300 * MS);
     screen(&rig, MACHINE_REST);
     assert_int_equal(rig.view.trial_index, 2);
     assert_true(rig.view.may_choose);
