@@ -45,7 +45,7 @@ static void add_light(struct scene *scene)
 {
     // Late morning: the sun reaches half of the court's floor and the upper arcade of one side.
     scene->sun.direction = dvec3_normalise((struct dvec3){0.60, 0.74, 0.40});
-    const float sun[3] = {75, 69, 60}, zenith[3] = {1.7f, 3.2f, 6.4f}, horizon[3] = {5.0f, 6.0f, 7.2f};
+    const float sun[3] = {75, 69, 60}, zenith[3] = {1.5f, 4.2f, 11.0f}, horizon[3] = {5.6f, 8.0f, 10.6f};
     const float ground[3] = {3.4f, 2.9f, 2.3f};
     for (int i = 0; i < 3; i++) {
         scene->sun.illuminance[i] = sun[i];
@@ -53,18 +53,18 @@ static void add_light(struct scene *scene)
         scene->sky.horizon[i] = horizon[i];
         scene->sky.ground[i] = ground[i];
     }
-    scene->luminance = 1.9f;
+    scene->luminance = 1.3f;
 }
 
 static bool add_path(struct scene *scene)
 {
     // Through the court past the basin, into the arcade, along it under the vaults, and out again.
     static const struct camera_path_knot knots[] = {
-        {{-10.2, 1.65, 0.6}, {0, 3.0, 0}},       {{-6.5, 1.65, 1.9}, {3, 3.0, -2.5}},
-        {{-2.8, 1.65, 2.9}, {5, 2.8, -4.5}},     {{1.5, 1.65, 3.0}, {8.5, 3.2, -3.5}},
-        {{5.6, 1.65, 2.4}, {11, 3.6, -1.0}},     {{9.3, 1.65, 1.0}, {12.5, 3.0, -6.0}},
-        {{10.4, 1.65, -1.6}, {6.0, 2.6, -8.0}},  {{9.3, 1.72, -4.2}, {2.0, 2.3, -7.0}},
-        {{6.6, 1.81, -6.1}, {-2.0, 2.2, -6.4}},  {{2.6, 1.81, -6.2}, {-6.0, 2.2, -5.9}},
+        {{-10.2, 1.65, 0.6}, {0, 3.0, 0}},       {{-6.5, 1.65, 1.8}, {3, 3.0, -2.5}},
+        {{-2.8, 1.65, 2.45}, {5, 2.8, -4.5}},    {{1.5, 1.65, 2.5}, {8.5, 3.2, -3.5}},
+        {{5.6, 1.65, 2.0}, {11, 3.6, -1.0}},     {{9.3, 1.65, 1.0}, {12.5, 3.0, -6.0}},
+        {{9.9, 1.65, -1.4}, {6.0, 2.6, -8.0}},   {{8.4, 1.68, -3.5}, {3.5, 2.4, -8.0}},
+        {{6.6, 1.79, -5.6}, {0, 2.3, -7.0}},     {{2.6, 1.81, -6.2}, {-6.0, 2.2, -5.9}},
         {{-1.6, 1.81, -6.1}, {-8.5, 2.3, -4.0}}, {{-4.5, 1.76, -4.4}, {-8.0, 2.9, 1.5}},
         {{-6.8, 1.67, -2.2}, {-5.0, 3.2, 5.5}},  {{-9.0, 1.65, -1.2}, {-1.5, 3.4, 5.0}},
     };
@@ -87,7 +87,7 @@ static void build(const struct atrium *atrium)
     struct visibility_desc light = {
         .sun = &scene->sun,
         .sky = &scene->sky,
-        .directions = 56,
+        .directions = 44,
         .open_material = atrium->material[ATRIUM_COURT],
         .below = {4.2f, 3.5f, 2.6f},
         .bounce = {0.95f, 0.82f, 0.66f},

@@ -6,7 +6,7 @@
 #define PI 3.14159265358979f
 #define CELL_M 0.3f // of flat surfaces: fine enough for the baked light
 
-enum { ARC = 32 }; // segments of a half circle; arches and vaults share it, so that their edges meet
+enum { ARC = 20 }; // segments of a half circle; arches and vaults share it, so that their edges meet
 
 static const struct storey {
     float floor, spring, top, shaft_radius;
@@ -79,7 +79,7 @@ static void add_vault(const struct atrium *atrium, struct solid_place middle)
             web.place.x[k] = turn.x[0] * middle.x[k] + turn.x[2] * middle.z[k];
             web.place.z[k] = turn.z[0] * middle.x[k] + turn.z[2] * middle.z[k];
         }
-        solid_patch(&web, NULL, vault_surface, ARC, 10);
+        solid_patch(&web, NULL, vault_surface, ARC, 5);
     }
 }
 
@@ -119,7 +119,7 @@ static void capital_leaf(const void *shape, float u, float v, float p[3], float 
     const struct leaf *l = shape;
     // A closed blade: u runs around its section, front then back.
     float around = u * 2 * PI, side = cosf(around), face = sinf(around);
-    float taper = sqrtf(fmaxf(1 - v * v * v * v, 0.0004f));
+    float taper = sqrtf(1 - 0.9f * fminf(v * v * v * v, 1));
     float bow = l->curl * v * v * v, rise = l->height * (v < 0.85f ? v : 0.85f + 0.3f * (v - 0.85f));
     float half = l->width * taper * (1 + 0.12f * cosf(v * 5 * PI));
     float across = half * side, out = l->radius + 0.01f + bow + 0.012f * taper * face - across * across * 2.5f;
@@ -139,7 +139,7 @@ static void add_capital(const struct atrium *atrium, struct solid_place foot, fl
         {radius * 0.86f, 0.22f, SOLID_COVE, 6}, {radius * 1.30f, 0.36f, SOLID_LINE, 1},
         {radius * 1.30f, 0.38f, SOLID_LINE, 0},
     };
-    solid_lathe(&stone, bell, COUNT(bell), 32);
+    solid_lathe(&stone, bell, COUNT(bell), 16);
     for (int row = 0; row < 2; row++) {
         for (int i = 0; i < 8; i++) {
             float turn = ((float)i + 0.5f * (float)row) * PI / 4;
@@ -147,7 +147,7 @@ static void add_capital(const struct atrium *atrium, struct solid_place foot, fl
                                 turn};
             struct solid_brush blade = stone;
             blade.place = atrium_at(foot, 0, 0.06f, 0);
-            solid_patch(&blade, &leaf, capital_leaf, 8, 6);
+            solid_patch(&blade, &leaf, capital_leaf, 4, 3);
         }
     }
     solid_box(&stone, (float[]){-0.36f, 0.38f, -0.36f}, (float[]){0.36f, 0.46f, 0.36f}, SOLID_ALL, 0.36f);
@@ -161,12 +161,12 @@ static void add_column(const struct atrium *atrium, struct solid_place foot, con
     solid_box(&stone, (float[]){-r * 1.42f, 0, -r * 1.42f}, (float[]){r * 1.42f, 0.12f, r * 1.42f},
               SOLID_ALL & ~(unsigned)SOLID_BOTTOM, 0.35f);
     const struct solid_corner column[] = {
-        {r * 1.22f, 0.12f, SOLID_TORUS, 8}, {r * 1.22f, 0.24f, SOLID_LINE, 1},
-        {r * 1.14f, 0.24f, SOLID_COVE, 5},  {r * 1.10f, 0.30f, SOLID_TORUS, 6},
-        {r * 1.10f, 0.36f, SOLID_LINE, 1},  {r, 0.36f, SOLID_SHAFT, 20},
+        {r * 1.22f, 0.12f, SOLID_TORUS, 5}, {r * 1.22f, 0.24f, SOLID_LINE, 1},
+        {r * 1.14f, 0.24f, SOLID_COVE, 3},  {r * 1.10f, 0.30f, SOLID_TORUS, 6},
+        {r * 1.10f, 0.36f, SOLID_LINE, 1},  {r, 0.36f, SOLID_SHAFT, 10},
         {r * 0.86f, top, SOLID_LINE, 0},
     };
-    solid_lathe(&stone, column, COUNT(column), 36);
+    solid_lathe(&stone, column, COUNT(column), 20);
     add_capital(atrium, atrium_at(foot, 0, top, 0), r);
 }
 
@@ -251,10 +251,21 @@ static void add_walls_and_floors(const struct atrium *atrium)
     }
 }
 
+// Never seen: keeps light from seeping in where thin walls and floors meet.
+static void add_shell(const struct atrium *atrium)
+{
+    float x = ATRIUM_HALF_X + ATRIUM_WALL + ATRIUM_DEPTH, z = ATRIUM_HALF_Z + ATRIUM_WALL + ATRIUM_DEPTH;
+    const struct solid_corner lid[] = {
+        {0.3f, 10.02f, SOLID_LINE, 1}, {-0.3f, 10.02f, SOLID_LINE, 1}, {-0.3f, -0.2f, SOLID_LINE, 0}};
+    struct solid_brush plaster = atrium_brush(atrium, ATRIUM_PLASTER, solid_place(0, 0, 0, 0));
+    solid_frame(&plaster, lid, COUNT(lid), x, z, 4);
+}
+
 void atrium_add_arcades(const struct atrium *atrium)
 {
     atrium_each_bay(atrium, add_bay);
     for (int i = 0; i < 4; i++)
         add_corner(atrium, i & 1 ? 1.0f : -1.0f, i & 2 ? 1.0f : -1.0f);
     add_walls_and_floors(atrium);
+    add_shell(atrium);
 }

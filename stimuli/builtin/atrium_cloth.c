@@ -36,7 +36,7 @@ static void add_banner(const struct atrium *atrium, struct solid_place bay, uint
         atrium_brush(atrium, colours[number / 2 % 3], atrium_at(bay, 0, ATRIUM_GALLERY + 0.99f, 0.24f));
     struct banner b = {.width = 1.25f, .length = 2.9f, .folds = 4.5f, .depth = 0.06f};
     b.phase = random_range(61, number, 0, 6);
-    solid_patch(&cloth, &b, banner_surface, 72, 60);
+    solid_patch(&cloth, &b, banner_surface, 40, 22);
 }
 
 struct curtain {
@@ -51,11 +51,11 @@ static void curtain_surface(const void *shape, float u, float v, float p[3], flo
     float length = 2.62f, tie = expf(-powf((v - 0.36f) / 0.16f, 2));
     float spread =
         v > 0.36f ? 0.22f + 0.86f * powf((v - 0.36f) / 0.64f, 1.4f) : 0.22f + 0.25f * (0.36f - v) / 0.36f;
-    float folds = u * 7 * 2 * PI + c->phase, depth = (0.055f + 0.02f * v) * (1 - 0.55f * tie);
+    float folds = u * 5 * 2 * PI + c->phase, depth = (0.045f + 0.02f * v) * (1 - 0.6f * tie);
     float sag = -0.06f * fabsf(sinf(u * 5 * PI)) * powf(fmaxf(v, 0), 12);
     p[0] = c->side * (1.12f - u * spread);
     p[1] = length * v + sag;
-    p[2] = depth * sinf(folds + 0.6f * sinf(v * 6)) + 0.02f * sinf(2.3f * folds);
+    p[2] = depth * sinf(folds + 0.6f * sinf(v * 6)) + 0.008f * sinf(1.6f * folds);
     uv[0] = u * 1.7f;
     uv[1] = length * (1 - v);
 }
@@ -71,7 +71,7 @@ static void add_curtain(const struct atrium *atrium, struct solid_place bay, uin
         struct solid_brush cloth = atrium_brush(atrium, colour, foot);
         for (int side = -1; side <= 1; side += 2) {
             struct curtain c = {(float)side, random_range(62, number * 2 + (side > 0), 0, 6)};
-            solid_patch(&cloth, &c, curtain_surface, 84, 44);
+            solid_patch(&cloth, &c, curtain_surface, 60, 18);
         }
         struct solid_brush rod = atrium_brush(atrium, ATRIUM_BRONZE, atrium_at(foot, 0, 2.66f, 0));
         struct solid_place across = rod.place;

@@ -19,7 +19,7 @@ static void add_sphere(const struct atrium *atrium, struct solid_place centre)
             bronze.place.y[k] = c * p.y[k] - s * p.x[k];
             bronze.place.z[k] = p.z[k];
         }
-        solid_ring(&bronze, 0.52f - 0.035f * (float)i, 0.017f, 72, 10);
+        solid_ring(&bronze, 0.52f - 0.035f * (float)i, 0.017f, 48, 8);
     }
     // A level ring: the horizon.
     const float level[3][3] = {{1, 0, 0}, {0, 0, 1}, {0, -1, 0}};
@@ -28,7 +28,7 @@ static void add_sphere(const struct atrium *atrium, struct solid_place centre)
         bronze.place.y[k] = level[1][k];
         bronze.place.z[k] = level[2][k];
     }
-    solid_ring(&bronze, 0.56f, 0.022f, 72, 10);
+    solid_ring(&bronze, 0.56f, 0.022f, 48, 8);
     bronze.place = centre;
     static const struct solid_corner globe[] = {
         {0.001f, -0.56f, SOLID_LINE, 1},
@@ -54,7 +54,7 @@ void atrium_add_fountain(const struct atrium *atrium)
         {1.55f, 0.58f, SOLID_LINE, 1}, {1.55f, 0.64f, SOLID_OVOLO, 4}, {1.52f, 0.67f, SOLID_LINE, 2},
         {1.30f, 0.67f, SOLID_LINE, 2}, {1.28f, 0.40f, SOLID_LINE, 0},
     };
-    solid_lathe(&stone, basin, COUNT(basin), 96);
+    solid_lathe(&stone, basin, COUNT(basin), 64);
     static const struct solid_corner surface[] = {{1.29f, 0.58f, SOLID_LINE, 10}, {0.1f, 0.58f, SOLID_LINE, 0}};
     struct solid_brush water = atrium_brush(atrium, ATRIUM_WATER, centre);
     solid_lathe(&water, surface, COUNT(surface), 64);
@@ -65,7 +65,7 @@ void atrium_add_fountain(const struct atrium *atrium)
         {0.24f, 1.56f, SOLID_COVE, 6},  {0.12f, 1.72f, SOLID_TORUS, 5}, {0.12f, 1.78f, SOLID_LINE, 1},
         {0.16f, 1.86f, SOLID_LINE, 2},  {0.02f, 1.88f, SOLID_LINE, 0},
     };
-    solid_lathe(&stone, stem, COUNT(stem), 64);
+    solid_lathe(&stone, stem, COUNT(stem), 40);
     static const struct solid_corner pool[] = {{0.71f, 1.495f, SOLID_LINE, 5}, {0.2f, 1.495f, SOLID_LINE, 0}};
     solid_lathe(&water, pool, COUNT(pool), 48);
     add_sphere(atrium, solid_place(0, 2.42f, 0, 0.4f));
@@ -108,7 +108,7 @@ static void add_leaf(const struct solid_brush *brush, const float foot[3], float
     b.normal[1] = b.side[2] * b.along[0] - b.side[0] * b.along[2];
     b.normal[2] = b.side[0] * b.along[1] - b.side[1] * b.along[0];
     normalise(b.normal);
-    solid_patch(brush, &b, blade_surface, 2, 3);
+    solid_patch(brush, &b, blade_surface, 2, 2);
 }
 
 static void add_pot(const struct atrium *atrium, struct solid_place foot, float size)
@@ -125,7 +125,7 @@ static void add_pot(const struct atrium *atrium, struct solid_place foot, float 
         {0.26f * size, 0.40f * size, SOLID_LINE, 0},
     };
     struct solid_brush clay = atrium_brush(atrium, ATRIUM_TERRACOTTA, foot);
-    solid_lathe(&clay, pot, COUNT(pot), 36);
+    solid_lathe(&clay, pot, COUNT(pot), 20);
     const struct solid_corner earth[] = {{0.268f * size, 0.45f * size, SOLID_LINE, 2},
                                          {0.001f, 0.47f * size, SOLID_LINE, 0}};
     struct solid_brush soil = atrium_brush(atrium, ATRIUM_SOIL, foot);
@@ -142,14 +142,14 @@ static void add_tree(const struct atrium *atrium, struct solid_place foot, uint6
     struct solid_brush wood = atrium_brush(atrium, ATRIUM_WOOD, foot);
     solid_lathe(&wood, stem, COUNT(stem), 10);
     struct solid_brush leaf = atrium_brush(atrium, ATRIUM_LEAF, foot);
-    for (uint32_t i = 0; i < 620; i++) {
-        float y = 1 - 2 * ((float)i + 0.5f) / 620, a = (float)i * 2.39996f + turn;
+    for (uint32_t i = 0; i < 400; i++) {
+        float y = 1 - 2 * ((float)i + 0.5f) / 400, a = (float)i * 2.39996f + turn;
         float r = 0.56f * (0.62f + 0.40f * sqrtf(random_unit(73, seed * 4096 + i)));
         float level = sqrtf(1 - y * y);
         float at[3] = {r * level * cosf(a), height + 0.18f + r * y, r * level * sinf(a)};
         float rise = 1.1f * y + random_range(74, seed * 4096 + i, -0.5f, 0.5f);
         add_leaf(&leaf, at, a + random_range(75, seed * 4096 + i, -0.9f, 0.9f), rise,
-                 random_range(76, seed * 4096 + i, 0.12f, 0.19f), 0.25f);
+                 random_range(76, seed * 4096 + i, 0.14f, 0.22f), 0.25f);
     }
 }
 
@@ -170,7 +170,7 @@ void atrium_add_plants(const struct atrium *atrium)
     for (uint32_t i = 0; i < 4; i++) {
         float x = i & 1 ? 1.0f : -1.0f, z = i & 2 ? 1.0f : -1.0f;
         add_tree(atrium, solid_place(x * 10.9f, 0, z * 3.4f, (float)i), i);
-        add_tree(atrium, solid_place(x * 3.6f, 0, z * 3.55f, (float)i + 2), i + 4);
+        add_tree(atrium, solid_place(x * 3.0f, 0, z * 3.75f, (float)i + 2), i + 4);
         add_shrub(atrium, solid_place(x * 11.1f, 0, z * 2.35f, (float)i), i);
         add_shrub(atrium, solid_place(x * 6.0f, ATRIUM_STEP, z * 7.05f, (float)i), i + 4);
         add_shrub(atrium, solid_place(x * 2.1f, 0, z * 0.9f, (float)i), i + 8);

@@ -21,12 +21,12 @@ static void add_mouldings(const struct atrium *atrium)
         {0.40f, 9.08f, SOLID_COVE, 5}, {0.50f, 9.20f, SOLID_LINE, 1}, {0.50f, 9.24f, SOLID_LINE, 4},
         {-2.9f, 10.0f, SOLID_LINE, 0},
     };
-    solid_frame(&stone, course, COUNT(course), ATRIUM_HALF_X, ATRIUM_HALF_Z, 0.3f);
-    solid_frame(&stone, cornice, COUNT(cornice), ATRIUM_HALF_X, ATRIUM_HALF_Z, 0.3f);
+    solid_frame(&stone, course, COUNT(course), ATRIUM_HALF_X, ATRIUM_HALF_Z, 0.6f);
+    solid_frame(&stone, cornice, COUNT(cornice), ATRIUM_HALF_X, ATRIUM_HALF_Z, 0.6f);
     static const struct solid_corner riser[] = {
         {0.22f, 0, SOLID_LINE, 1},      {0.22f, 0.09f, SOLID_LINE, 1},   {0.24f, 0.09f, SOLID_TORUS, 5},
         {0.24f, 0.166f, SOLID_LINE, 1}, {-0.02f, 0.166f, SOLID_LINE, 1}, {-0.02f, 0.158f, SOLID_LINE, 0}};
-    solid_frame(&stone, riser, COUNT(riser), ATRIUM_HALF_X, ATRIUM_HALF_Z, 0.3f);
+    solid_frame(&stone, riser, COUNT(riser), ATRIUM_HALF_X, ATRIUM_HALF_Z, 0.6f);
 }
 
 static void add_dentils(const struct atrium *atrium, struct solid_place bay, uint32_t number)
@@ -51,7 +51,7 @@ static void add_dentils(const struct atrium *atrium, struct solid_place bay, uin
             }
             const struct solid_corner half[] = {
                 {0.10f, 0, SOLID_LINE, 1}, {0.13f, 0, SOLID_LINE, 1}, {0.115f, -0.6f, SOLID_LINE, 0}};
-            solid_arch(&tile, half, COUNT(half), 10);
+            solid_arch(&tile, half, COUNT(half), 6);
         }
     }
 }
@@ -69,13 +69,13 @@ static void add_balustrade(const struct atrium *atrium, struct solid_place bay, 
     solid_box(&stone, (float[]){-1.3f, y + 0.93f, z - 0.09f}, (float[]){1.3f, y + 0.98f, z + 0.09f},
               faces & ~(unsigned)SOLID_BOTTOM, 0.3f);
     static const struct solid_corner baluster[] = {
-        {0.065f, 0, SOLID_LINE, 1},      {0.065f, 0.05f, SOLID_LINE, 1}, {0.04f, 0.05f, SOLID_COVE, 3},
-        {0.035f, 0.12f, SOLID_OVOLO, 4}, {0.085f, 0.28f, SOLID_LINE, 3}, {0.032f, 0.56f, SOLID_TORUS, 4},
-        {0.032f, 0.60f, SOLID_COVE, 3},  {0.065f, 0.67f, SOLID_LINE, 1}, {0.065f, 0.72f, SOLID_LINE, 0},
+        {0.065f, 0, SOLID_LINE, 1},      {0.065f, 0.05f, SOLID_LINE, 1}, {0.04f, 0.05f, SOLID_COVE, 2},
+        {0.035f, 0.12f, SOLID_OVOLO, 3}, {0.085f, 0.28f, SOLID_LINE, 2}, {0.032f, 0.56f, SOLID_TORUS, 2},
+        {0.032f, 0.60f, SOLID_COVE, 2},  {0.065f, 0.67f, SOLID_LINE, 1}, {0.065f, 0.72f, SOLID_LINE, 0},
     };
-    for (int i = 0; i < 8; i++) {
-        stone.place = atrium_at(bay, -1.05f + 0.3f * (float)i, y + 0.14f, z);
-        solid_lathe(&stone, baluster, COUNT(baluster), 14);
+    for (int i = 0; i < 6; i++) {
+        stone.place = atrium_at(bay, -0.95f + 0.38f * (float)i, y + 0.14f, z);
+        solid_lathe(&stone, baluster, COUNT(baluster), 8);
     }
 }
 
@@ -133,5 +133,5 @@ void atrium_add_trim(const struct atrium *atrium)
     atrium_each_bay(atrium, add_door);
     struct solid_brush court = atrium_brush(atrium, ATRIUM_COURT, solid_place(0, 0, 0, 0));
     float x = ATRIUM_HALF_X - 0.22f, z = ATRIUM_HALF_Z - 0.22f;
-    solid_quad(&court, (float[]){-x, 0, z}, (float[]){2 * x, 0, 0}, (float[]){0, 0, -2 * z}, 0.12f);
+    solid_quad(&court, (float[]){-x, 0, z}, (float[]){2 * x, 0, 0}, (float[]){0, 0, -2 * z}, 0.16f);
 }

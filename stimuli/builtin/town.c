@@ -12,7 +12,7 @@ static void add_light(struct scene *scene)
 {
     // A low evening sun; lanterns are lit and count in the shade.
     scene->sun.direction = dvec3_normalise((struct dvec3){-0.62, 0.52, 0.50});
-    const float sun[3] = {46, 39, 28}, zenith[3] = {1.6f, 2.7f, 5.2f}, horizon[3] = {5.6f, 5.3f, 5.0f};
+    const float sun[3] = {60, 50, 35}, zenith[3] = {1.2f, 3.6f, 9.6f}, horizon[3] = {6.0f, 7.6f, 9.2f};
     const float ground[3] = {2.2f, 1.9f, 1.5f};
     for (int i = 0; i < 3; i++) {
         scene->sun.illuminance[i] = sun[i];
@@ -20,7 +20,7 @@ static void add_light(struct scene *scene)
         scene->sky.horizon[i] = horizon[i];
         scene->sky.ground[i] = ground[i];
     }
-    scene->luminance = 1.7f;
+    scene->luminance = 1.35f;
 }
 
 static bool add_path(struct scene *scene)

@@ -72,7 +72,7 @@ static float stones(float u, float v, int across, uint64_t salt, float *out_tone
 static void cobble(const struct texture_noise *n, float u, float v, struct texel *out)
 {
     (void)n;
-    float tone, edge = stones(u, v, 7, 121, &tone), s = speckle(u, v, 125);
+    float tone, edge = stones(u, v, 9, 121, &tone), s = speckle(u, v, 125);
     float top = texture_smooth(0.6f, 3.0f, edge);
     paint(out, 0.60f + 0.06f * tone, 0.57f + 0.02f * tone, 0.53f,
           (0.62f + 0.38f * top) * (0.72f + 0.3f * tone + 0.16f * s));
@@ -93,7 +93,7 @@ static float courses(float u, float v, int columns, int rows, uint64_t salt, flo
 static void paving(const struct texture_noise *n, float u, float v, struct texel *out)
 {
     (void)n;
-    float tone, edge = courses(u, v, 2, 4, 131, &tone), s = speckle(u, v, 132), joint = edge < 1 ? 0.0f : 1.0f;
+    float tone, edge = courses(u, v, 4, 4, 131, &tone), s = speckle(u, v, 132), joint = edge < 1 ? 0.0f : 1.0f;
     paint(out, 0.74f, 0.69f, 0.60f + 0.04f * tone,
           (0.6f + 0.4f * joint) * (0.78f + 0.22f * tone + 0.16f * (s - 0.5f)));
     out->height = 0.02f * joint + 0.004f * s;
@@ -313,7 +313,7 @@ static void flower(const struct texture_noise *n, float u, float v, struct texel
 static void water(const struct texture_noise *n, float u, float v, struct texel *out)
 {
     float wave = texture_noise_at(n, TEXTURE_COARSE, floorf(u * 32) / 32, floorf(v * 32) / 32);
-    paint(out, 0.22f, 0.42f, 0.52f, 0.75f + 0.5f * wave);
+    paint(out, 0.20f, 0.36f, 0.40f, 0.75f + 0.5f * wave);
     out->height = 0.05f * wave;
     out->roughness = 0.2f;
 }

@@ -120,7 +120,8 @@ bool town_make_bridge(struct voxel_model *model)
     const int32_t length = 48, deck = 10;
     if (!voxel_create(model, 24, deck + 6, length, 0.25f))
         return false;
-    model->origin[1] = -(float)deck * 0.25f;
+    // A little above the banks, so that roadway and ground do not fight for the same depth.
+    model->origin[1] = -(float)deck * 0.25f + 0.03f;
     for (int32_t z = 0; z < length; z++) {
         float t = ((float)z + 0.5f) / (float)length * 2 - 1, along = fabsf(fmodf((float)z + 0.5f, 24) - 12);
         int32_t top = deck + (int32_t)lrintf(1.6f * (1 - t * t));

@@ -197,7 +197,7 @@ static bool add_animals(const struct town *town)
         {.x = 0, .z = -14.8, .half_x = 11, .half_z = 1.6, .rounds = 1},
         {.x = 0.5, .z = -15.2, .half_x = 10, .half_z = 1.6, .rounds = 1, .phase = 0.45},
         {.x = 5.4, .z = 3.6, .half_x = 1.9, .half_z = 1.5, .rounds = 2},
-        {.x = -5.5, .z = -5.9, .half_x = 1.6, .half_z = 1.3, .rounds = -2},
+        {.x = 3.2, .z = 7.0, .half_x = 1.5, .half_z = 1.2, .rounds = -2},
     };
     const struct animal *who[] = {&sheep, &sheep, &sheep, &cow, &cow, &pig, &pig};
     for (size_t i = 0; i < sizeof walks / sizeof walks[0]; i++) {

@@ -85,7 +85,7 @@ static void add(const struct town *town, struct town_block *block, enum town_mod
         return;
     float wx = (float)block->i * TOWN_PERIOD + x, wz = (float)block->j * TOWN_PERIOD + z;
     block->items[block->item_count++] =
-        (struct town_item){model, wx, town_ground(town, wx, wz), wz, quarter % 4};
+        (struct town_item){model, wx, model == TOWN_BRIDGE ? 0.0f : town_ground(town, wx, wz), wz, quarter % 4};
 }
 
 static uint32_t pick(const struct town *town, const struct town_block *block, uint32_t which, uint32_t n)
@@ -105,7 +105,6 @@ static void plan_square(const struct town *town, struct town_block *b)
         float x = k & 1 ? 1.0f : -1.0f, z = k & 2 ? 1.0f : -1.0f;
         add(town, b, TOWN_LAMP, 10.5f * x, 10.5f * z, 0);
         add(town, b, TOWN_TREE + k % 4, 7.75f * x, 8.25f * z, k);
-        add(town, b, TOWN_LAMP, 4.5f * x, 4.5f * z, 0);
     }
     add(town, b, TOWN_STALL, -8.5f, -2.6f, 1);
     add(town, b, TOWN_STALL, -8.5f, 1.8f, 1);
@@ -113,6 +112,10 @@ static void plan_square(const struct town *town, struct town_block *b)
     add(town, b, TOWN_STALL, 1.5f, -9.0f, 0);
     add(town, b, TOWN_STALL, -3.0f, -9.2f, 0);
     add(town, b, TOWN_HAY, 8.5f, 3.5f, 1);
+    add(town, b, TOWN_LAMP, -10.4f, -0.4f, 0);
+    add(town, b, TOWN_LAMP, 10.4f, 1.2f, 0);
+    add(town, b, TOWN_LAMP, -0.7f, -10.4f, 0);
+    add(town, b, TOWN_LAMP, 0.5f, 10.4f, 0);
 }
 
 static void plan_park(const struct town *town, struct town_block *b)

@@ -19,7 +19,17 @@ struct depth_map {
     float *depth; // the greatest distance along `towards`; owned by the caller
 };
 
-static float dot(const float a[3], const float b[3])
+static inline float least(float a, float b)
+{
+    return a < b ? a : b;
+}
+
+static inline float most(float a, float b)
+{
+    return a > b ? a : b;
+}
+
+static inline float dot(const float a[3], const float b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
@@ -57,12 +67,12 @@ static void map_bounds(struct depth_map *map, const struct maker *maker)
         for (uint32_t i = 0; i < b->vertex_count; i++) {
             float at[2] = {dot(b->vertices[i].position, map->right), dot(b->vertices[i].position, map->up)};
             for (int k = 0; k < 2; k++) {
-                map->low[k] = fminf(map->low[k], at[k]);
-                high[k] = fmaxf(high[k], at[k]);
+                map->low[k] = least(map->low[k], at[k]);
+                high[k] = most(high[k], at[k]);
             }
         }
     }
-    float span = fmaxf(high[0] - map->low[0], high[1] - map->low[1]) + 0.01f;
+    float span = most(high[0] - map->low[0], high[1] - map->low[1]) + 0.01f;
     map->scale = (float)map->size / span;
 }
 
@@ -78,13 +88,13 @@ static void write_depth(const struct depth_map *map, int32_t x, int32_t y, float
     if (x < 0 || y < 0 || x >= map->size || y >= map->size)
         return;
     float *to = &map->depth[y * map->size + x];
-    *to = fmaxf(*to, depth);
+    *to = most(*to, depth);
 }
 
 static void draw_triangle(const struct depth_map *map, const float a[3], const float b[3], const float c[3])
 {
-    int32_t x0 = (int32_t)floorf(fminf(a[0], fminf(b[0], c[0]))), x1 = (int32_t)fmaxf(a[0], fmaxf(b[0], c[0]));
-    int32_t y0 = (int32_t)floorf(fminf(a[1], fminf(b[1], c[1]))), y1 = (int32_t)fmaxf(a[1], fmaxf(b[1], c[1]));
+    int32_t x0 = (int32_t)floorf(least(a[0], least(b[0], c[0]))), x1 = (int32_t)most(a[0], most(b[0], c[0]));
+    int32_t y0 = (int32_t)floorf(least(a[1], least(b[1], c[1]))), y1 = (int32_t)most(a[1], most(b[1], c[1]));
     float area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
     if (x1 - x0 <= 1 && y1 - y0 <= 1) {
         write_depth(map, (int32_t)((a[0] + b[0] + c[0]) / 3), (int32_t)((a[1] + b[1] + c[1]) / 3),
@@ -132,7 +142,7 @@ static bool open_at(const struct depth_map *map, float x, float y, float depth)
     return map->depth[iy * map->size + ix] <= depth;
 }
 
-// Evenly over the sphere (Fibonacci), slightly jittered by nothing: the same for every scene.
+// Evenly over the sphere (Fibonacci).
 static void direction_of(uint32_t i, uint32_t count, float out[3])
 {
     float y = 1 - 2 * ((float)i + 0.5f) / (float)count, r = sqrtf(1 - y * y), a = (float)i * 2.39996323f;
@@ -150,7 +160,7 @@ static float facing(const struct scene_material *material, const struct maker_ve
 {
     float c = dot(v->normal, towards);
     // A thin sheet is lit from the side the eye is on; half of each is a fair share.
-    return material->double_sided ? 0.5f * fabsf(c) + 0.1f : fmaxf(c, 0);
+    return material->double_sided ? 0.5f * fabsf(c) + 0.1f : most(c, 0);
 }
 
 static void lift(const struct maker_vertex *v, const float towards[3], float metres, float out[3])
@@ -215,12 +225,12 @@ static void write_colours(const struct light_sum *sums, const struct maker *make
         for (uint32_t i = 0; i < b->vertex_count; i++, s++) {
             struct maker_vertex *v = &b->vertices[i];
             float full[3], c = dot(v->normal, towards);
-            c = thin ? fabsf(c) : fmaxf(c, 0);
+            c = thin ? fabsf(c) : most(c, 0);
             visibility_sky(desc->sky, v->normal[1], full);
             for (int k = 0; k < 3; k++) {
                 float sun = desc->sun->illuminance[k] * c / PI;
                 float arrives = sums[s].all > 0 ? sums[s].open[k] / sums[s].all : full[k];
-                v->colour[k] *= fminf((arrives + sun * sums[s].sun) / (full[k] + sun), 1);
+                v->colour[k] *= least((arrives + sun * sums[s].sun) / (full[k] + sun), 1);
             }
         }
     }

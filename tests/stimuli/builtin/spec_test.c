@@ -1,0 +1,85 @@
+// What a scene's specification may say, and what a wrong one is answered.
+#include "stimuli/builtin/builtin.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static void refused(const char *spec, const char *first, const char *second)
+{
+    char error[512] = "";
+    struct scene *scene = builtin_scene_open(spec, error, sizeof error);
+    if (scene != NULL)
+        fail_msg("'%s' was taken", spec);
+    if (strstr(error, first) == NULL || strstr(error, second) == NULL || strchr(error, '\n') != NULL)
+        fail_msg("'%s' gave: %s", spec, error);
+}
+
+static void wrong_values_name_the_range(void **state)
+{
+    (void)state;
+    refused("town:triangles=-5", "triangles=-5", "20000 to 8000000");
+    refused("town:triangles=19999", "triangles=19999", "20000 to 8000000");
+    refused("town:triangles=8000001", "8000001", "20000 to 8000000");
+    refused("town:triangles=", "triangles=", "20000 to 8000000");
+    refused("town:triangles=1e5", "1e5", "20000 to 8000000");
+    refused("town:triangles=nan", "nan", "20000 to 8000000");
+    refused("town:triangles=99999999999999999999999999999999999999", "9999", "20000 to 8000000");
+    refused("town:seed=4294967296", "seed", "0 to 4294967295");
+    refused("town:triangles=50000,seed=x", "seed=x", "4294967295");
+}
+
+static void wrong_names_name_the_valid_ones(void **state)
+{
+    (void)state;
+    refused("town:foo=1", "foo=1", "triangles, seed");
+    refused("town:foo", "foo", "triangles, seed");
+    refused("town:", "town", "triangles, seed");
+    refused("town:seed=1,", "town", "triangles, seed");
+    refused("town:=5", "=5", "triangles, seed");
+    refused("atrium:x", "'x'", "no parameters");
+    refused("atrium:", "atrium", "no parameters");
+    refused("nosuch", "nosuch", "atrium, town");
+    refused("nosuch:a=1", "nosuch", "atrium, town");
+    refused("", "''", "atrium, town");
+    refused("towns", "towns", "atrium, town");
+}
+
+static void small_error_buffers_are_kept(void **state)
+{
+    (void)state;
+    char error[8] = "1234567";
+    assert_null(builtin_scene_open("nosuch", error, 4));
+    assert_int_equal(strlen(error), 3);
+    assert_int_equal(error[4], '5');
+}
+
+static void table_holds_what_is_known(void **state)
+{
+    (void)state;
+    for (const struct builtin_scene *s = builtin_scenes; s->name != NULL; s++) {
+        assert_true(builtin_scene_known(s->name));
+        assert_true(strlen(s->description) > 0);
+        for (const struct builtin_parameter *p = s->parameters; p->name != NULL; p++)
+            assert_true(p->min <= p->value && p->value <= p->max);
+    }
+    assert_true(builtin_scene_known("town:seed=3"));
+    assert_false(builtin_scene_known("nosuch"));
+    assert_false(builtin_scene_known(""));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(wrong_values_name_the_range),
+        cmocka_unit_test(wrong_names_name_the_valid_ones),
+        cmocka_unit_test(small_error_buffers_are_kept),
+        cmocka_unit_test(table_holds_what_is_known),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
