@@ -65,6 +65,8 @@ static void test_the_text_and_its_hash_are_kept(void **state)
 {
     (void)state;
     struct protocol *p = load("short.yaml");
+    assert_int_equal(protocol_block_trials(&p->blocks[0]), 2);
+    assert_int_equal(protocol_block_trials(&p->blocks[1]), 1);
     uint8_t digest[SHA256_BYTES];
     assert_int_equal(strlen(p->text), p->text_size);
     sha256(p->text, p->text_size, digest);
