@@ -1,6 +1,7 @@
 # room(NAME SOURCES ... [SHADERS ...] [USES ...] [LIBS ...] [DEFINES ...])
 #   one static library for one room; USES are other rooms, LIBS outside libraries, both linked PRIVATE.
 #   Shaders (GLSL beside the C) become <file>.h in the build tree: a uint32_t array named after the file.
+#   "shade.comp:EMISSIVE:REDRAW" compiles shade.comp with those macros defined, as shade.comp_emissive_redraw.h.
 # program(NAME SOURCES ... USES ... LIBS ...)
 # room_test(NAME SOURCES ... USES ... LIBS ... [GPU] [TIMEOUT seconds])
 #   a cmocka program registered with ctest; exit 77 means skipped; GPU tests run one at a time.
@@ -23,13 +24,21 @@ if(FOVSTUDY_SANITIZE)
 endif()
 
 function(compile_shaders target)
-  foreach(shader ${ARGN})
+  foreach(variant ${ARGN})
+    string(REPLACE ":" ";" defines ${variant})
+    list(POP_FRONT defines shader)
     get_filename_component(name ${shader} NAME)
+    set(macros)
+    foreach(define ${defines})
+      list(APPEND macros -D${define})
+      string(TOLOWER ${define} define)
+      string(APPEND name _${define})
+    endforeach()
     string(REPLACE "." "_" symbol ${name})
     set(spv ${CMAKE_CURRENT_BINARY_DIR}/${name}.spv)
     set(header ${CMAKE_CURRENT_BINARY_DIR}/${name}.h)
     add_custom_command(OUTPUT ${header}
-      COMMAND ${GLSLC} --target-env=vulkan1.3 -O -I ${CMAKE_SOURCE_DIR} -MD -MF ${spv}.d -o ${spv}
+      COMMAND ${GLSLC} --target-env=vulkan1.3 -O -I ${CMAKE_SOURCE_DIR} ${macros} -MD -MF ${spv}.d -o ${spv}
               ${CMAKE_CURRENT_SOURCE_DIR}/${shader}
       COMMAND spirv-val --target-env vulkan1.3 --scalar-block-layout ${spv}
       COMMAND ${CMAKE_COMMAND} -DINPUT=${spv} -DOUTPUT=${header} -DSYMBOL=${symbol} -DTYPE=uint32_t

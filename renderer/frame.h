@@ -9,9 +9,10 @@
 #include <stdint.h>
 
 struct frame_eye {
-    struct pose pose;              // world
-    struct viewing_fov fov;        // may be asymmetric
-    double gaze_x_deg, gaze_y_deg; // what the fovea follows, this eye's frame (viewing.h); not finite: see frame.h below
+    struct pose pose;       // world
+    struct viewing_fov fov; // may be asymmetric
+    double gaze_x_deg,
+        gaze_y_deg; // what the fovea follows, this eye's frame (viewing.h); not finite: see frame.h below
 };
 
 // A gaze that is not a number means no valid gaze: a foveated mode then treats every pixel as foveal.
@@ -25,12 +26,12 @@ struct frame {
 enum { FRAME_TIMERS = 32 };
 
 struct frame_stats {
-    uint64_t shaded_px;     // pixels of both eyes whose shading ran or whose background was written
-    uint64_t triangles;     // submitted to the rasteriser after culling, both eyes
-    uint64_t submodels;     // draws after culling, both eyes
-    double gpu_ms;          // first to last time stamp of the frame
-    double cpu_ms;          // recording and submitting
-    bool full_redraw;       // a mode with history did not use it
+    uint64_t shaded_px; // pixels of both eyes whose shading ran or whose background was written
+    uint64_t triangles; // submitted to the rasteriser after culling, both eyes
+    uint64_t submodels; // draws after culling, both eyes
+    double gpu_ms;      // first to last time stamp of the frame
+    double cpu_ms;      // recording and submitting
+    bool full_redraw;   // a mode with history did not use it
     uint32_t timer_count;
     struct {
         const char *name; // constant string, the pass

@@ -27,7 +27,7 @@ struct mode_record; // modes/room.h: what it records a frame from
 struct mode {
     const char *name;
     const char *description;
-    const char *source;                     // the paper
+    const char *source;                      // the paper
     const struct mode_parameter *parameters; // NULL where there are none
     uint32_t parameter_count;
     // False with one sentence in `why` where the device lacks what the mode needs. NULL: runs anywhere.
@@ -45,7 +45,7 @@ struct mode_choice {
 
 extern const struct mode *const modes[]; // NULL-terminated
 
-const struct mode *mode_find(const char *name); // NULL for an unknown name
+const struct mode *mode_find(const char *name);                      // NULL for an unknown name
 int mode_parameter_index(const struct mode *mode, const char *name); // -1 for an unknown name
 
 // Sets one parameter from text; false with a sentence where it is unknown, malformed or out of range.

@@ -63,14 +63,16 @@ bool mode_set(struct mode_choice *choice, const char *name, const char *text, ch
     if (index < 0) {
         char known[512];
         list_parameters(choice->mode, known, sizeof known);
-        snprintf(error, error_size, "mode '%s' has no parameter '%s'; it has: %s", choice->mode->name, name, known);
+        snprintf(error, error_size, "mode '%s' has no parameter '%s'; it has: %s", choice->mode->name, name,
+                 known);
         return false;
     }
     const struct mode_parameter *p = &choice->mode->parameters[index];
     if (p->choices) {
         if (choose_word(p, text, &choice->values[index]))
             return true;
-        snprintf(error, error_size, "%s of mode '%s' is not '%s'; it is one of the words 'fovstudy modes' lists", name,
+        snprintf(error, error_size,
+                 "%s of mode '%s' is not '%s'; it is one of the words 'fovstudy modes' lists", name,
                  choice->mode->name, text);
         return false;
     }
@@ -81,8 +83,8 @@ bool mode_set(struct mode_choice *choice, const char *name, const char *text, ch
         return false;
     }
     if (value < p->min || value > p->max) {
-        snprintf(error, error_size, "%s of mode '%s' is %s; it goes from %g to %g%s%s", name, choice->mode->name, text,
-                 p->min, p->max, p->unit[0] ? " " : "", p->unit);
+        snprintf(error, error_size, "%s of mode '%s' is %s; it goes from %g to %g%s%s", name,
+                 choice->mode->name, text, p->min, p->max, p->unit[0] ? " " : "", p->unit);
         return false;
     }
     choice->values[index] = value;
@@ -153,7 +155,8 @@ void mode_explain(struct mode_explanation *e, uint64_t bytes, const char *format
     vsnprintf(what, sizeof what, format, arguments);
     va_end(arguments);
     e->bytes += bytes;
-    int n = snprintf(e->text + e->used, sizeof e->text - e->used, "%9.2f MiB  %s\n", (double)bytes / 1048576, what);
+    int n =
+        snprintf(e->text + e->used, sizeof e->text - e->used, "%9.2f MiB  %s\n", (double)bytes / 1048576, what);
     if (n > 0 && e->used + (size_t)n < sizeof e->text)
         e->used += (size_t)n;
 }

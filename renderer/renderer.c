@@ -70,9 +70,11 @@ struct renderer *renderer_create(const struct renderer_desc *desc)
     if (!r->gpu)
         goto error;
     snprintf(r->device.name, sizeof r->device.name, "%s", r->gpu->properties.deviceName);
-    snprintf(r->device.driver, sizeof r->device.driver, "%s %s", r->gpu->driver.driverName, r->gpu->driver.driverInfo);
+    snprintf(r->device.driver, sizeof r->device.driver, "%s %s", r->gpu->driver.driverName,
+             r->gpu->driver.driverInfo);
     r->device.software = r->gpu->properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
-    if (!gpu_frame_init(&r->frame, r->gpu, desc->pass_times) || !screen_init(&r->screen, r->gpu, r->width, r->height))
+    if (!gpu_frame_init(&r->frame, r->gpu, desc->pass_times) ||
+        !screen_init(&r->screen, r->gpu, r->width, r->height))
         goto error;
     if (desc->create_surface && !(r->present = gpu_present_create(r->gpu)))
         goto error;
@@ -147,7 +149,8 @@ struct renderer_option *renderer_option_create(struct renderer *r, struct render
                                      .frame = &o->constants,
                                      .counters = &o->counters,
                                      .explanation = &o->explanation};
-    if (gpu_buffer_create(r->gpu, "frame constants", sizeof(struct shared_frame), usage, GPU_HOST, &o->constants) &&
+    if (gpu_buffer_create(r->gpu, "frame constants", sizeof(struct shared_frame), usage, GPU_HOST,
+                          &o->constants) &&
         gpu_buffer_create(r->gpu, "counters", sizeof(struct shared_counters), usage, GPU_HOST, &o->counters) &&
         (o->state = choice->mode->create(&setup)))
         return o;
@@ -189,7 +192,8 @@ static void store3(float *out, struct dvec3 v)
 static void fill_planes(struct shared_eye *out, const struct frame_eye *eye, struct dvec3 position)
 {
     const struct viewing_fov *f = &eye->fov;
-    const struct dvec3 normals[4] = {{1, 0, -f->tan_left}, {-1, 0, -f->tan_right}, {0, 1, -f->tan_down}, {0, -1, -f->tan_up}};
+    const struct dvec3 normals[4] = {
+        {1, 0, -f->tan_left}, {-1, 0, -f->tan_right}, {0, 1, -f->tan_down}, {0, -1, -f->tan_up}};
     for (int i = 0; i < 4; i++) {
         struct dvec3 n = dquat_rotate(eye->pose.orientation, dvec3_normalise(normals[i]));
         store3(out->planes[i], n);
@@ -203,10 +207,12 @@ static void fill_planes(struct shared_eye *out, const struct frame_eye *eye, str
 static void fill_eye(struct shared_eye *out, const struct frame_eye *eye, struct dvec3 origin)
 {
     const struct viewing_fov *f = &eye->fov;
-    struct fmat4 projection = geometry_projection(f->tan_left, f->tan_right, f->tan_down, f->tan_up, VIEWING_NEAR_M);
+    struct fmat4 projection =
+        geometry_projection(f->tan_left, f->tan_right, f->tan_down, f->tan_up, VIEWING_NEAR_M);
     struct fmat4 view = geometry_view(&eye->pose, origin);
     struct fmat4 clip = fmat4_multiply(&projection, &view);
-    struct dmat4 world_from_eye = dmat4_compose(eye->pose.position, eye->pose.orientation, (struct dvec3){1, 1, 1});
+    struct dmat4 world_from_eye =
+        dmat4_compose(eye->pose.position, eye->pose.orientation, (struct dvec3){1, 1, 1});
     struct fmat4 relative = geometry_relative(&world_from_eye, origin);
     memcpy(out->clip_from_world, clip.m, sizeof clip.m);
     memcpy(out->world_from_eye, relative.m, sizeof relative.m);
@@ -259,15 +265,14 @@ static void fill_stats(const struct renderer_option *o, bool history, double cpu
 {
     const struct gpu_frame *f = &o->renderer->frame;
     const struct shared_counters *c = o->counters.mapped;
-    *out = (struct frame_stats){.shaded_px = o->result.counts_shaded
-                                                 ? c->shaded_px
-                                                 : 2ull * o->renderer->width * o->renderer->height,
-                                .triangles = c->triangles,
-                                .submodels = c->submodels,
-                                .gpu_ms = f->gpu_ms,
-                                .cpu_ms = cpu_ms,
-                                .full_redraw = o->result.redraw_map && !history,
-                                .timer_count = f->timer_count};
+    *out = (struct frame_stats){
+        .shaded_px = o->result.counts_shaded ? c->shaded_px : 2ull * o->renderer->width * o->renderer->height,
+        .triangles = c->triangles,
+        .submodels = c->submodels,
+        .gpu_ms = f->gpu_ms,
+        .cpu_ms = cpu_ms,
+        .full_redraw = o->result.redraw_map && !history,
+        .timer_count = f->timer_count};
     for (uint32_t i = 0; i < f->timer_count && i < FRAME_TIMERS; i++) {
         out->timers[i].name = f->timers[i].name;
         out->timers[i].ms = f->timers[i].ms;
@@ -308,7 +313,8 @@ bool renderer_set_overlay(struct renderer *r, const struct renderer_overlay *ove
 {
     if (!overlay)
         return screen_set_overlay(&r->screen, NULL, 0, 0, NULL, NULL);
-    return screen_set_overlay(&r->screen, overlay->rgba, overlay->width, overlay->height, overlay->left, overlay->top);
+    return screen_set_overlay(&r->screen, overlay->rgba, overlay->width, overlay->height, overlay->left,
+                              overlay->top);
 }
 
 bool renderer_show(struct renderer *r, struct renderer_option *option, double fade)
@@ -329,8 +335,8 @@ bool renderer_resized(struct renderer *r)
 }
 
 // Copies a rectangle of one layer to the CPU.
-static bool read_image(struct renderer *r, const struct gpu_image *image, uint32_t layer, uint32_t left, uint32_t bytes,
-                       uint8_t *out)
+static bool read_image(struct renderer *r, const struct gpu_image *image, uint32_t layer, uint32_t left,
+                       uint32_t bytes, uint8_t *out)
 {
     struct gpu_buffer staging;
     const VkDeviceSize size = (VkDeviceSize)r->width * r->height * bytes;

@@ -27,12 +27,12 @@ struct renderer_log {
 
 struct renderer_desc {
     struct renderer_log log;
-    const char *device; // part of a device's name; NULL: the best one that has what is needed
+    const char *device;     // part of a device's name; NULL: the best one that has what is needed
     uint32_t width, height; // per eye, pixels, 16..16384
     bool validation;        // load the validation layer; its messages are logged and counted
     bool pass_times;        // one submission per pass, for true per-pass times on software drivers
-    // A surface to present to. NULL: headless. create returns a VkResult; instance is a VkInstance and out_surface a
-    // VkSurfaceKHR *.
+    // A surface to present to. NULL: headless. create returns a VkResult; instance is a VkInstance and
+    // out_surface a VkSurfaceKHR *.
     int (*create_surface)(void *user, void *instance, void *out_surface);
     void *surface_user;
     const char *const *instance_extensions; // needed by create_surface
@@ -75,8 +75,8 @@ struct renderer_overlay {
 bool renderer_set_overlay(struct renderer *renderer, const struct renderer_overlay *overlay);
 
 // Puts the option's last frame on the screen, mixed with mid gray (sRGB 0.5) in linear light: fade 0 the image,
-// 1 gray; then the overlay. option NULL: gray. With a surface this presents and waits for the display's pace; without, the result
-// only lies ready for renderer_read_screen.
+// 1 gray; then the overlay. option NULL: gray. With a surface this presents and waits for the display's pace;
+// without, the result only lies ready for renderer_read_screen.
 bool renderer_show(struct renderer *renderer, struct renderer_option *option, double fade);
 bool renderer_resized(struct renderer *renderer); // the surface changed size; the next show rebuilds its images
 

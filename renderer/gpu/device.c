@@ -64,8 +64,8 @@ static VKAPI_ATTR VkBool32 VKAPI_CALL heard(VkDebugUtilsMessageSeverityFlagBitsE
     if (data->pMessageIdName && strncmp(data->pMessageIdName, "Loader", 6) == 0)
         return VK_FALSE;
     gpu->validation_messages++;
-    gpu_say(gpu, severity & VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT ? GPU_ERROR : GPU_WARNING, "validation: %s",
-            data->pMessage);
+    gpu_say(gpu, severity & VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT ? GPU_ERROR : GPU_WARNING,
+            "validation: %s", data->pMessage);
     return VK_FALSE;
 }
 
@@ -108,7 +108,8 @@ static bool create_instance(struct gpu *gpu, const struct gpu_desc *desc)
         .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
         .messageSeverity =
             VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
-        .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT,
+        .messageType =
+            VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT,
         .pfnUserCallback = heard,
         .pUserData = gpu,
     };
@@ -125,13 +126,15 @@ static bool create_instance(struct gpu *gpu, const struct gpu_desc *desc)
     };
     VkResult result = vkCreateInstance(&info, NULL, &gpu->instance);
     if (result == VK_ERROR_INCOMPATIBLE_DRIVER) {
-        gpu_say(gpu, GPU_ERROR, "no Vulkan driver was found; install one (mesa-vulkan-drivers runs without a GPU)");
+        gpu_say(gpu, GPU_ERROR,
+                "no Vulkan driver was found; install one (mesa-vulkan-drivers runs without a GPU)");
         return false;
     }
     if (!gpu_check(gpu, result, "vkCreateInstance"))
         return false;
     volkLoadInstanceOnly(gpu->instance);
-    return !desc->validation || VK(gpu, vkCreateDebugUtilsMessengerEXT(gpu->instance, &messenger, NULL, &gpu->messenger));
+    return !desc->validation ||
+           VK(gpu, vkCreateDebugUtilsMessengerEXT(gpu->instance, &messenger, NULL, &gpu->messenger));
 }
 
 struct features {
@@ -143,7 +146,8 @@ struct features {
 
 static void link_features(struct features *f)
 {
-    f->core = (VkPhysicalDeviceFeatures2){.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &f->v11};
+    f->core =
+        (VkPhysicalDeviceFeatures2){.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &f->v11};
     f->v11 = (VkPhysicalDeviceVulkan11Features){.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES,
                                                 .pNext = &f->v12};
     f->v12 = (VkPhysicalDeviceVulkan12Features){.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES,
@@ -170,7 +174,9 @@ static const char *first_lack(VkPhysicalDevice physical, const VkPhysicalDeviceP
         {has.v12.drawIndirectCount, "drawIndirectCount"},
         {has.v12.scalarBlockLayout, "scalarBlockLayout"},
         {has.v12.hostQueryReset, "hostQueryReset"},
+        {has.core.features.shaderStorageImageExtendedFormats, "shaderStorageImageExtendedFormats"},
         {has.v13.dynamicRendering, "dynamicRendering"},
+        {has.v13.maintenance4, "maintenance4"},
         {has.v13.synchronization2, "synchronization2"},
     };
     for (size_t i = 0; i < countof(needs); i++) {
@@ -219,7 +225,8 @@ static bool choose_device(struct gpu *gpu, const char *wanted)
     if (!VK(gpu, vkEnumeratePhysicalDevices(gpu->instance, &count, devices)))
         return false;
     if (count == 0) {
-        gpu_say(gpu, GPU_ERROR, "no Vulkan device was found; install a driver (mesa-vulkan-drivers runs without a GPU)");
+        gpu_say(gpu, GPU_ERROR,
+                "no Vulkan device was found; install a driver (mesa-vulkan-drivers runs without a GPU)");
         return false;
     }
     char lacks[512] = "";
@@ -235,7 +242,8 @@ static bool choose_device(struct gpu *gpu, const char *wanted)
             lack = "a queue that draws, computes, keeps time and presents";
         if (lack) {
             size_t used = strlen(lacks);
-            snprintf(lacks + used, sizeof lacks - used, "%s%s lacks %s", used ? "; " : "", properties.deviceName, lack);
+            snprintf(lacks + used, sizeof lacks - used, "%s%s lacks %s", used ? "; " : "",
+                     properties.deviceName, lack);
         } else if (rank(properties.deviceType) > best) {
             best = rank(properties.deviceType);
             gpu->physical = devices[i];
@@ -261,6 +269,7 @@ static bool create_device(struct gpu *gpu)
         .multiDrawIndirect = VK_TRUE,
         .drawIndirectFirstInstance = VK_TRUE,
         .samplerAnisotropy = VK_TRUE,
+        .shaderStorageImageExtendedFormats = VK_TRUE,
         .shaderInt64 = has.core.features.shaderInt64,
     };
     use.v11.shaderDrawParameters = VK_TRUE;
@@ -270,6 +279,7 @@ static bool create_device(struct gpu *gpu)
     use.v12.shaderBufferInt64Atomics = has.v12.shaderBufferInt64Atomics;
     use.v13.dynamicRendering = VK_TRUE;
     use.v13.synchronization2 = VK_TRUE;
+    use.v13.maintenance4 = VK_TRUE;
     gpu->int64_atomics = has.core.features.shaderInt64 && has.v12.shaderBufferInt64Atomics;
     const char *swapchain = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
     const VkDeviceCreateInfo info = {

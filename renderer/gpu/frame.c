@@ -42,7 +42,8 @@ static bool submit(struct gpu_frame *frame)
     const VkSubmitInfo2 info = {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2,
                                 .commandBufferInfoCount = 1,
                                 .pCommandBufferInfos = &commands};
-    return VK(gpu, vkEndCommandBuffer(frame->cmd)) && VK(gpu, vkQueueSubmit2(gpu->queue, 1, &info, frame->fence)) &&
+    return VK(gpu, vkEndCommandBuffer(frame->cmd)) &&
+           VK(gpu, vkQueueSubmit2(gpu->queue, 1, &info, frame->fence)) &&
            VK(gpu, vkWaitForFences(gpu->device, 1, &frame->fence, VK_TRUE, UINT64_MAX)) &&
            VK(gpu, vkResetFences(gpu->device, 1, &frame->fence));
 }
@@ -59,7 +60,8 @@ VkCommandBuffer gpu_timer_begin(struct gpu_frame *frame, const char *name)
 {
     if (frame->timer_count < GPU_TIMERS) {
         frame->timers[frame->timer_count].name = name;
-        vkCmdWriteTimestamp2(frame->cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, frame->queries, 2 * frame->timer_count);
+        vkCmdWriteTimestamp2(frame->cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, frame->queries,
+                             2 * frame->timer_count);
     }
     return frame->cmd;
 }
@@ -83,9 +85,9 @@ bool gpu_frame_end(struct gpu_frame *frame)
     if (frame->timer_count == 0)
         return true;
     uint64_t stamps[2 * GPU_TIMERS];
-    if (!VK(frame->gpu, vkGetQueryPoolResults(frame->gpu->device, frame->queries, 0, 2 * frame->timer_count, sizeof stamps,
-                                              stamps, sizeof stamps[0],
-                                              VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT)))
+    if (!VK(frame->gpu,
+            vkGetQueryPoolResults(frame->gpu->device, frame->queries, 0, 2 * frame->timer_count, sizeof stamps,
+                                  stamps, sizeof stamps[0], VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT)))
         return false;
     const double ms_per_tick = (double)frame->gpu->properties.limits.timestampPeriod * 1e-6;
     double sum = 0;
@@ -93,6 +95,7 @@ bool gpu_frame_end(struct gpu_frame *frame)
         frame->timers[i].ms = (double)(stamps[2 * i + 1] - stamps[2 * i]) * ms_per_tick;
         sum += frame->timers[i].ms;
     }
-    frame->gpu_ms = frame->pass_times ? sum : (double)(stamps[2 * frame->timer_count - 1] - stamps[0]) * ms_per_tick;
+    frame->gpu_ms =
+        frame->pass_times ? sum : (double)(stamps[2 * frame->timer_count - 1] - stamps[0]) * ms_per_tick;
     return true;
 }

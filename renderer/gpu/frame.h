@@ -1,9 +1,9 @@
 // One frame's command buffer and its named timers.
 //
-// Use: gpu_frame_begin -> (gpu_timer_begin "name" ... commands on frame->cmd ... gpu_timer_end)* -> gpu_frame_end, which
-// submits, waits and reads the timers. With pass_times every timed pass is a submission of its own, waited for: on
-// software drivers time stamps inside one submission say nothing about single passes. frame->cmd changes there, so
-// read it anew after gpu_timer_begin.
+// Use: gpu_frame_begin -> (gpu_timer_begin "name" ... commands on frame->cmd ... gpu_timer_end)* ->
+// gpu_frame_end, which submits, waits and reads the timers. With pass_times every timed pass is a submission of
+// its own, waited for: on software drivers time stamps inside one submission say nothing about single passes.
+// frame->cmd changes there, so read it anew after gpu_timer_begin.
 #ifndef RENDERER_GPU_FRAME_H
 #define RENDERER_GPU_FRAME_H
 
@@ -40,8 +40,8 @@ struct gpu_present;
 struct gpu_present *gpu_present_create(struct gpu *gpu); // NULL when headless or after a logged sentence
 void gpu_present_destroy(struct gpu_present *present);
 void gpu_present_resized(struct gpu_present *present);
-// Scales `image` (layout GENERAL, sRGB-encoded rgba8) over the window and presents with vertical sync. Waits until
-// the copy is done. A window of zero size shows nothing and succeeds.
+// Scales `image` (layout GENERAL, sRGB-encoded rgba8) over the window and presents with vertical sync. Waits
+// until the copy is done. A window of zero size shows nothing and succeeds.
 bool gpu_present_show(struct gpu_present *present, const struct gpu_image *image);
 
 #endif

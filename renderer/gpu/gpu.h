@@ -2,7 +2,8 @@
 //
 // Use: gpu_create -> buffers, images, kernels -> gpu_frame_begin ... gpu_frame_end (frame.h) -> gpu_destroy.
 // Everything here runs on one thread and one queue; a frame is waited for before the next begins.
-// Functions that can fail return false or NULL after one sentence to the log. Destroy functions accept zeroed objects.
+// Functions that can fail return false or NULL after one sentence to the log. Destroy functions accept zeroed
+// objects.
 #ifndef RENDERER_GPU_GPU_H
 #define RENDERER_GPU_GPU_H
 
@@ -124,6 +125,7 @@ struct gpu_code {
 struct gpu_binding {
     VkDescriptorType type;
     VkShaderStageFlags stages; // 0: compute
+    bool absent;               // this variant of the shader has no such binding
 };
 
 // A compute pipeline with one descriptor set; bindings are numbered from 0.
@@ -131,8 +133,6 @@ struct gpu_kernel {
     VkPipeline pipeline;
     VkPipelineLayout layout;
     VkDescriptorSetLayout set_layout;
-    uint32_t binding_count;
-    struct gpu_binding bindings[GPU_BINDINGS];
 };
 
 struct gpu_kernel_desc {
@@ -148,7 +148,8 @@ struct gpu_kernel_desc {
 bool gpu_kernel_create(struct gpu *gpu, const struct gpu_kernel_desc *desc, struct gpu_kernel *out);
 void gpu_kernel_destroy(struct gpu *gpu, struct gpu_kernel *kernel);
 
-// One resource of a descriptor set, in binding order: a buffer, or a view (with a sampler).
+// One resource of a descriptor set, in binding order: a buffer, or a view (with a sampler). All zero: left
+// unset, for a binding that the shader's variant does not have.
 struct gpu_resource {
     const struct gpu_buffer *buffer;
     VkImageView view;
@@ -157,10 +158,12 @@ struct gpu_resource {
 };
 
 // A descriptor set of a layout; freed with the pool or by gpu_set_free. Null on failure.
-VkDescriptorSet gpu_set_create(struct gpu *gpu, VkDescriptorSetLayout layout, const struct gpu_binding *bindings,
-                               const struct gpu_resource *resources, uint32_t count);
+VkDescriptorSet gpu_set_create(struct gpu *gpu, VkDescriptorSetLayout layout,
+                               const struct gpu_binding *bindings, const struct gpu_resource *resources,
+                               uint32_t count);
 void gpu_set_free(struct gpu *gpu, VkDescriptorSet set);
-VkDescriptorSetLayout gpu_set_layout_create(struct gpu *gpu, const struct gpu_binding *bindings, uint32_t count);
+VkDescriptorSetLayout gpu_set_layout_create(struct gpu *gpu, const struct gpu_binding *bindings,
+                                            uint32_t count);
 
 void gpu_dispatch(VkCommandBuffer cmd, const struct gpu_kernel *kernel, VkDescriptorSet set, const void *push,
                   uint32_t push_bytes, uint32_t groups_x, uint32_t groups_y, uint32_t groups_z);
@@ -183,8 +186,11 @@ struct gpu_raster_desc {
 // Triangles; viewport, scissor, cull mode and front face are dynamic.
 VkPipeline gpu_raster_create(struct gpu *gpu, const struct gpu_raster_desc *desc);
 
-VkSampler gpu_sampler_create(struct gpu *gpu, VkFilter mag, VkSamplerAddressMode u, VkSamplerAddressMode v,
-                             float anisotropy);
+// Mip levels are blended where `min` is linear. anisotropy 1: none.
+VkSampler gpu_sampler_create(struct gpu *gpu, VkFilter min, VkFilter mag, VkSamplerAddressMode u,
+                             VkSamplerAddressMode v, float anisotropy);
+// Unfiltered and clamped, for images read pixel by pixel.
+VkSampler gpu_sampler_create_plain(struct gpu *gpu);
 
 // --- barriers ---
 

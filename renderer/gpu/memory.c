@@ -2,8 +2,8 @@
 
 #include <string.h>
 
-static bool allocate(struct gpu *gpu, const VkMemoryRequirements *needs, VkMemoryPropertyFlags flags, const char *name,
-                     VkDeviceMemory *out)
+static bool allocate(struct gpu *gpu, const VkMemoryRequirements *needs, VkMemoryPropertyFlags flags,
+                     const char *name, VkDeviceMemory *out)
 {
     for (uint32_t i = 0; i < gpu->memory.memoryTypeCount; i++) {
         if (!(needs->memoryTypeBits & 1u << i) || (gpu->memory.memoryTypes[i].propertyFlags & flags) != flags)
@@ -25,13 +25,15 @@ bool gpu_buffer_create(struct gpu *gpu, const char *name, VkDeviceSize size, VkB
                        enum gpu_buffer_kind kind, struct gpu_buffer *out)
 {
     *out = (struct gpu_buffer){.size = size ? size : 4};
-    if (usage & VK_BUFFER_USAGE_STORAGE_BUFFER_BIT && out->size > gpu->properties.limits.maxStorageBufferRange) {
+    if (usage & VK_BUFFER_USAGE_STORAGE_BUFFER_BIT &&
+        out->size > gpu->properties.limits.maxStorageBufferRange) {
         gpu_say(gpu, GPU_ERROR, "%s needs a storage buffer of %.1f MiB; %s allows %.1f MiB", name,
                 (double)size / 1048576, gpu->properties.deviceName,
                 (double)gpu->properties.limits.maxStorageBufferRange / 1048576);
         return false;
     }
-    const VkBufferCreateInfo info = {.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = out->size, .usage = usage};
+    const VkBufferCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = out->size, .usage = usage};
     if (!VK(gpu, vkCreateBuffer(gpu->device, &info, NULL, &out->buffer)))
         return false;
     gpu_name(gpu, VK_OBJECT_TYPE_BUFFER, (uint64_t)out->buffer, name);
@@ -42,7 +44,8 @@ bool gpu_buffer_create(struct gpu *gpu, const char *name, VkDeviceSize size, VkB
                          : VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
     if (!allocate(gpu, &needs, flags, name, &out->memory) ||
         !VK(gpu, vkBindBufferMemory(gpu->device, out->buffer, out->memory, 0)) ||
-        (kind == GPU_HOST && !VK(gpu, vkMapMemory(gpu->device, out->memory, 0, VK_WHOLE_SIZE, 0, &out->mapped)))) {
+        (kind == GPU_HOST &&
+         !VK(gpu, vkMapMemory(gpu->device, out->memory, 0, VK_WHOLE_SIZE, 0, &out->mapped)))) {
         gpu_buffer_destroy(gpu, out);
         return false;
     }
@@ -82,7 +85,8 @@ bool gpu_once_end(struct gpu *gpu, VkCommandBuffer cmd)
     const VkSubmitInfo2 submit = {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2,
                                   .commandBufferInfoCount = 1,
                                   .pCommandBufferInfos = &commands};
-    bool ok = VK(gpu, vkEndCommandBuffer(cmd)) && VK(gpu, vkQueueSubmit2(gpu->queue, 1, &submit, VK_NULL_HANDLE)) &&
+    bool ok = VK(gpu, vkEndCommandBuffer(cmd)) &&
+              VK(gpu, vkQueueSubmit2(gpu->queue, 1, &submit, VK_NULL_HANDLE)) &&
               VK(gpu, vkQueueWaitIdle(gpu->queue));
     vkFreeCommandBuffers(gpu->device, gpu->pool, 1, &cmd);
     return ok;
@@ -114,8 +118,8 @@ static VkImageAspectFlags aspect_of(VkFormat format)
     return format == VK_FORMAT_D32_SFLOAT ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
 }
 
-static VkImageView make_view(struct gpu *gpu, const struct gpu_image *image, VkImageViewType type, uint32_t level,
-                             uint32_t levels, uint32_t layer, uint32_t layers)
+static VkImageView make_view(struct gpu *gpu, const struct gpu_image *image, VkImageViewType type,
+                             uint32_t level, uint32_t levels, uint32_t layer, uint32_t layers)
 {
     const VkImageViewCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
@@ -160,7 +164,8 @@ bool gpu_image_create(struct gpu *gpu, const struct gpu_image_desc *desc, struct
     out->view = make_view(gpu, out, type, 0, out->levels, 0, out->layers);
     if (!out->view)
         goto error;
-    const VkImageUsageFlags attachment = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+    const VkImageUsageFlags attachment =
+        VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
     for (uint32_t layer = 0; desc->usage & attachment && layer < out->layers; layer++) {
         out->layer_views[layer] = make_view(gpu, out, VK_IMAGE_VIEW_TYPE_2D, 0, 1, layer, 1);
         if (!out->layer_views[layer])
@@ -208,9 +213,10 @@ bool gpu_image_fill(struct gpu *gpu, struct gpu_image *image, const uint8_t *rgb
     bool ok = cmd;
     if (cmd) {
         gpu_image_layout(cmd, image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-        vkCmdCopyBufferToImage(cmd, staging.buffer, image->image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, image->levels,
-                               copies);
-        gpu_image_layout(cmd, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+        vkCmdCopyBufferToImage(cmd, staging.buffer, image->image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                               image->levels, copies);
+        gpu_image_layout(cmd, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                         VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
         ok = gpu_once_end(gpu, cmd);
     }
     gpu_buffer_destroy(gpu, &staging);
@@ -223,7 +229,8 @@ void gpu_barrier(VkCommandBuffer cmd, VkPipelineStageFlags2 from, VkPipelineStag
                                       .srcStageMask = from,
                                       .srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT,
                                       .dstStageMask = to,
-                                      .dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT};
+                                      .dstAccessMask =
+                                          VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT};
     vkCmdPipelineBarrier2(cmd, &(VkDependencyInfo){.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
                                                    .memoryBarrierCount = 1,
                                                    .pMemoryBarriers = &barrier});
@@ -240,7 +247,8 @@ void gpu_image_layout(VkCommandBuffer cmd, const struct gpu_image *image, VkImag
         .oldLayout = from,
         .newLayout = to,
         .image = image->image,
-        .subresourceRange = {aspect_of(image->format), 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS},
+        .subresourceRange = {aspect_of(image->format), 0, VK_REMAINING_MIP_LEVELS, 0,
+                             VK_REMAINING_ARRAY_LAYERS},
     };
     vkCmdPipelineBarrier2(cmd, &(VkDependencyInfo){.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
                                                    .imageMemoryBarrierCount = 1,

@@ -3,25 +3,25 @@
 VkDescriptorSetLayout gpu_set_layout_create(struct gpu *gpu, const struct gpu_binding *bindings, uint32_t count)
 {
     VkDescriptorSetLayoutBinding list[GPU_BINDINGS];
+    uint32_t used = 0;
     for (uint32_t i = 0; i < count; i++) {
-        list[i] = (VkDescriptorSetLayoutBinding){.binding = i,
-                                                 .descriptorType = bindings[i].type,
-                                                 .descriptorCount = 1,
-                                                 .stageFlags = bindings[i].stages ? bindings[i].stages
-                                                                                  : VK_SHADER_STAGE_COMPUTE_BIT};
+        if (!bindings[i].absent)
+            list[used++] = (VkDescriptorSetLayoutBinding){
+                .binding = i,
+                .descriptorType = bindings[i].type,
+                .descriptorCount = 1,
+                .stageFlags = bindings[i].stages ? bindings[i].stages : VK_SHADER_STAGE_COMPUTE_BIT};
     }
-    const VkDescriptorSetLayoutCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-                                                  .bindingCount = count,
-                                                  .pBindings = list};
+    const VkDescriptorSetLayoutCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO, .bindingCount = used, .pBindings = list};
     VkDescriptorSetLayout layout = VK_NULL_HANDLE;
     return VK(gpu, vkCreateDescriptorSetLayout(gpu->device, &info, NULL, &layout)) ? layout : VK_NULL_HANDLE;
 }
 
 static VkShaderModule make_module(struct gpu *gpu, struct gpu_code code)
 {
-    const VkShaderModuleCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-                                           .codeSize = code.bytes,
-                                           .pCode = code.words};
+    const VkShaderModuleCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = code.bytes, .pCode = code.words};
     VkShaderModule module = VK_NULL_HANDLE;
     return VK(gpu, vkCreateShaderModule(gpu->device, &info, NULL, &module)) ? module : VK_NULL_HANDLE;
 }
@@ -31,7 +31,8 @@ struct specialisation {
     VkSpecializationInfo info;
 };
 
-static const VkSpecializationInfo *specialise(struct specialisation *s, const int32_t *constants, uint32_t count)
+static const VkSpecializationInfo *specialise(struct specialisation *s, const int32_t *constants,
+                                              uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++)
         s->entries[i] = (VkSpecializationMapEntry){i, i * (uint32_t)sizeof(int32_t), sizeof(int32_t)};
@@ -39,11 +40,15 @@ static const VkSpecializationInfo *specialise(struct specialisation *s, const in
     return &s->info;
 }
 
+VkSampler gpu_sampler_create_plain(struct gpu *gpu)
+{
+    return gpu_sampler_create(gpu, VK_FILTER_NEAREST, VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                              VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE, 1);
+}
+
 bool gpu_kernel_create(struct gpu *gpu, const struct gpu_kernel_desc *desc, struct gpu_kernel *out)
 {
-    *out = (struct gpu_kernel){.binding_count = desc->binding_count};
-    for (uint32_t i = 0; i < desc->binding_count; i++)
-        out->bindings[i] = desc->bindings[i];
+    *out = (struct gpu_kernel){0};
     VkShaderModule module = make_module(gpu, desc->code);
     out->set_layout = gpu_set_layout_create(gpu, desc->bindings, desc->binding_count);
     if (!module || !out->set_layout)
@@ -86,8 +91,9 @@ void gpu_kernel_destroy(struct gpu *gpu, struct gpu_kernel *kernel)
     *kernel = (struct gpu_kernel){0};
 }
 
-VkDescriptorSet gpu_set_create(struct gpu *gpu, VkDescriptorSetLayout layout, const struct gpu_binding *bindings,
-                               const struct gpu_resource *resources, uint32_t count)
+VkDescriptorSet gpu_set_create(struct gpu *gpu, VkDescriptorSetLayout layout,
+                               const struct gpu_binding *bindings, const struct gpu_resource *resources,
+                               uint32_t count)
 {
     const VkDescriptorSetAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
                                               .descriptorPool = gpu->descriptors,
@@ -99,21 +105,25 @@ VkDescriptorSet gpu_set_create(struct gpu *gpu, VkDescriptorSetLayout layout, co
     VkWriteDescriptorSet writes[GPU_BINDINGS];
     VkDescriptorBufferInfo buffers[GPU_BINDINGS];
     VkDescriptorImageInfo images[GPU_BINDINGS];
+    uint32_t used = 0;
     for (uint32_t i = 0; i < count; i++) {
         const struct gpu_resource *r = &resources[i];
+        if (bindings[i].absent)
+            continue;
         if (r->buffer)
             buffers[i] = (VkDescriptorBufferInfo){r->buffer->buffer, 0, VK_WHOLE_SIZE};
         else
-            images[i] = (VkDescriptorImageInfo){r->sampler, r->view, r->layout ? r->layout : VK_IMAGE_LAYOUT_GENERAL};
-        writes[i] = (VkWriteDescriptorSet){.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                           .dstSet = set,
-                                           .dstBinding = i,
-                                           .descriptorCount = 1,
-                                           .descriptorType = bindings[i].type,
-                                           .pImageInfo = &images[i],
-                                           .pBufferInfo = &buffers[i]};
+            images[i] =
+                (VkDescriptorImageInfo){r->sampler, r->view, r->layout ? r->layout : VK_IMAGE_LAYOUT_GENERAL};
+        writes[used++] = (VkWriteDescriptorSet){.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                                .dstSet = set,
+                                                .dstBinding = i,
+                                                .descriptorCount = 1,
+                                                .descriptorType = bindings[i].type,
+                                                .pImageInfo = &images[i],
+                                                .pBufferInfo = &buffers[i]};
     }
-    vkUpdateDescriptorSets(gpu->device, count, writes, 0, NULL);
+    vkUpdateDescriptorSets(gpu->device, used, writes, 0, NULL);
     return set;
 }
 
@@ -155,8 +165,8 @@ VkPipeline gpu_raster_create(struct gpu *gpu, const struct gpu_raster_desc *desc
     VkPipelineColorBlendAttachmentState blends[GPU_ATTACHMENTS];
     for (uint32_t i = 0; i < desc->colour_count; i++)
         blends[i] = (VkPipelineColorBlendAttachmentState){.colorWriteMask = 0xf};
-    const VkDynamicState dynamic[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR, VK_DYNAMIC_STATE_CULL_MODE,
-                                      VK_DYNAMIC_STATE_FRONT_FACE};
+    const VkDynamicState dynamic[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR,
+                                      VK_DYNAMIC_STATE_CULL_MODE, VK_DYNAMIC_STATE_FRONT_FACE};
     const VkPipelineRenderingCreateInfo rendering = {.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
                                                      .colorAttachmentCount = desc->colour_count,
                                                      .pColorAttachmentFormats = desc->colour_formats,
@@ -174,29 +184,37 @@ VkPipeline gpu_raster_create(struct gpu *gpu, const struct gpu_raster_desc *desc
                 .vertexAttributeDescriptionCount = desc->attribute_count,
                 .pVertexAttributeDescriptions = desc->attributes},
         .pInputAssemblyState =
-            &(VkPipelineInputAssemblyStateCreateInfo){.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
-                                                      .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST},
-        .pViewportState = &(VkPipelineViewportStateCreateInfo){.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO,
-                                                               .viewportCount = 1,
-                                                               .scissorCount = 1},
+            &(VkPipelineInputAssemblyStateCreateInfo){
+                .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
+                .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST},
+        .pViewportState =
+            &(VkPipelineViewportStateCreateInfo){.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO,
+                                                 .viewportCount = 1,
+                                                 .scissorCount = 1},
         .pRasterizationState =
-            &(VkPipelineRasterizationStateCreateInfo){.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
-                                                      .polygonMode = VK_POLYGON_MODE_FILL,
-                                                      .lineWidth = 1},
+            &(VkPipelineRasterizationStateCreateInfo){
+                .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
+                .polygonMode = VK_POLYGON_MODE_FILL,
+                .lineWidth = 1},
         .pMultisampleState =
-            &(VkPipelineMultisampleStateCreateInfo){.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
-                                                    .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT},
+            &(VkPipelineMultisampleStateCreateInfo){
+                .sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
+                .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT},
         .pDepthStencilState =
-            &(VkPipelineDepthStencilStateCreateInfo){.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
-                                                     .depthTestEnable = desc->depth_format != VK_FORMAT_UNDEFINED,
-                                                     .depthWriteEnable = desc->depth_format != VK_FORMAT_UNDEFINED,
-                                                     .depthCompareOp = desc->depth_compare},
-        .pColorBlendState = &(VkPipelineColorBlendStateCreateInfo){.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
-                                                                   .attachmentCount = desc->colour_count,
-                                                                   .pAttachments = blends},
-        .pDynamicState = &(VkPipelineDynamicStateCreateInfo){.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
-                                                             .dynamicStateCount = countof(dynamic),
-                                                             .pDynamicStates = dynamic},
+            &(VkPipelineDepthStencilStateCreateInfo){
+                .sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
+                .depthTestEnable = desc->depth_format != VK_FORMAT_UNDEFINED,
+                .depthWriteEnable = desc->depth_format != VK_FORMAT_UNDEFINED,
+                .depthCompareOp = desc->depth_compare},
+        .pColorBlendState =
+            &(VkPipelineColorBlendStateCreateInfo){.sType =
+                                                       VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
+                                                   .attachmentCount = desc->colour_count,
+                                                   .pAttachments = blends},
+        .pDynamicState =
+            &(VkPipelineDynamicStateCreateInfo){.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
+                                                .dynamicStateCount = countof(dynamic),
+                                                .pDynamicStates = dynamic},
         .layout = desc->layout,
     };
     if (vertex && (fragment || !desc->fragment.words) &&
@@ -207,14 +225,14 @@ VkPipeline gpu_raster_create(struct gpu *gpu, const struct gpu_raster_desc *desc
     return pipeline;
 }
 
-VkSampler gpu_sampler_create(struct gpu *gpu, VkFilter mag, VkSamplerAddressMode u, VkSamplerAddressMode v,
-                             float anisotropy)
+VkSampler gpu_sampler_create(struct gpu *gpu, VkFilter min, VkFilter mag, VkSamplerAddressMode u,
+                             VkSamplerAddressMode v, float anisotropy)
 {
     const VkSamplerCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
         .magFilter = mag,
-        .minFilter = VK_FILTER_LINEAR,
-        .mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR,
+        .minFilter = min,
+        .mipmapMode = min == VK_FILTER_LINEAR ? VK_SAMPLER_MIPMAP_MODE_LINEAR : VK_SAMPLER_MIPMAP_MODE_NEAREST,
         .addressModeU = u,
         .addressModeV = v,
         .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,

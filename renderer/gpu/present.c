@@ -138,8 +138,8 @@ static bool record(struct gpu_present *p, const struct gpu_image *image, VkImage
         .dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
         .dstOffsets = {{0, 0, 0}, {(int32_t)p->extent.width, (int32_t)p->extent.height, 1}},
     };
-    vkCmdBlitImage(p->cmd, image->image, VK_IMAGE_LAYOUT_GENERAL, target, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &blit,
-                   VK_FILTER_LINEAR);
+    vkCmdBlitImage(p->cmd, image->image, VK_IMAGE_LAYOUT_GENERAL, target, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                   1, &blit, VK_FILTER_LINEAR);
     swap_layout(p->cmd, target, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR);
     return VK(p->gpu, vkEndCommandBuffer(p->cmd));
 }
@@ -160,7 +160,8 @@ bool gpu_present_show(struct gpu_present *p, const struct gpu_image *image)
         p->stale = true;
         return true;
     }
-    VkResult acquired = vkAcquireNextImageKHR(gpu->device, p->swapchain, UINT64_MAX, p->acquired, VK_NULL_HANDLE, &index);
+    VkResult acquired =
+        vkAcquireNextImageKHR(gpu->device, p->swapchain, UINT64_MAX, p->acquired, VK_NULL_HANDLE, &index);
     if (acquired == VK_ERROR_OUT_OF_DATE_KHR) {
         p->stale = true;
         return true; // this frame is lost to the resize; the next one is shown
@@ -174,8 +175,9 @@ bool gpu_present_show(struct gpu_present *p, const struct gpu_image *image)
                                                         .semaphore = p->acquired,
                                                         .stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT},
         .commandBufferInfoCount = 1,
-        .pCommandBufferInfos = &(VkCommandBufferSubmitInfo){.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
-                                                            .commandBuffer = p->cmd},
+        .pCommandBufferInfos =
+            &(VkCommandBufferSubmitInfo){.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
+                                         .commandBuffer = p->cmd},
         .signalSemaphoreInfoCount = 1,
         .pSignalSemaphoreInfos = &(VkSemaphoreSubmitInfo){.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
                                                           .semaphore = p->drawn[index],

@@ -16,10 +16,10 @@ struct mode_explanation {
 struct mode_setup {
     struct gpu *gpu;
     const struct scene_gpu *scene;
-    uint32_t width, height;             // per eye
-    const double *values;               // of the mode's parameters, in table order
-    const struct gpu_buffer *frame;     // shared_frame, filled before every record
-    const struct gpu_buffer *counters;  // shared_counters, zeroed before every record
+    uint32_t width, height;            // per eye
+    const double *values;              // of the mode's parameters, in table order
+    const struct gpu_buffer *frame;    // shared_frame, filled before every record
+    const struct gpu_buffer *counters; // shared_counters, zeroed before every record
     struct mode_explanation *explanation;
 };
 

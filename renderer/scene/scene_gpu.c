@@ -5,7 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const float max_anisotropy = 8;
+// No anisotropic filtering: the software driver of Mesa 22.3 does not come back from it (tried at 8,
+// 2026-11-22).
+static const float max_anisotropy = 1;
 
 static VkSamplerAddressMode address_mode(enum scene_wrap wrap)
 {
@@ -22,14 +24,15 @@ static VkSamplerAddressMode address_mode(enum scene_wrap wrap)
 static bool create_texture(struct gpu *gpu, const char *name, VkFormat format, uint32_t width, uint32_t height,
                            uint32_t levels, const uint8_t *rgba, struct gpu_image *out)
 {
-    return gpu_image_create(gpu,
-                            &(struct gpu_image_desc){.name = name,
-                                                     .format = format,
-                                                     .width = width,
-                                                     .height = height,
-                                                     .levels = levels,
-                                                     .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT},
-                            out) &&
+    return gpu_image_create(
+               gpu,
+               &(struct gpu_image_desc){.name = name,
+                                        .format = format,
+                                        .width = width,
+                                        .height = height,
+                                        .levels = levels,
+                                        .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT},
+               out) &&
            gpu_image_fill(gpu, out, rgba);
 }
 
@@ -44,14 +47,16 @@ static bool create_textures(struct scene_gpu *s)
     for (uint32_t i = 0; i < scene->texture_count; i++) {
         const struct scene_texture *t = &scene->textures[i];
         VkFormat format = t->srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM;
-        if (!create_texture(s->gpu, "texture", format, t->width, t->height, t->levels, t->rgba, &s->textures[i]))
+        if (!create_texture(s->gpu, "texture", format, t->width, t->height, t->levels, t->rgba,
+                            &s->textures[i]))
             return false;
-        s->samplers[i] = gpu_sampler_create(s->gpu, t->nearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR,
-                                            address_mode(t->wrap_u), address_mode(t->wrap_v), max_anisotropy);
+        s->samplers[i] =
+            gpu_sampler_create(s->gpu, VK_FILTER_LINEAR, t->nearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR,
+                               address_mode(t->wrap_u), address_mode(t->wrap_v), max_anisotropy);
         if (!s->samplers[i])
             return false;
     }
-    s->plain = gpu_sampler_create(s->gpu, VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_REPEAT,
+    s->plain = gpu_sampler_create(s->gpu, VK_FILTER_LINEAR, VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_REPEAT,
                                   VK_SAMPLER_ADDRESS_MODE_REPEAT, 1);
     return s->plain && create_texture(s->gpu, "white", VK_FORMAT_R8G8B8A8_UNORM, 1, 1, 1, white, &s->white);
 }
@@ -60,7 +65,8 @@ static bool create_material_sets(struct scene_gpu *s)
 {
     struct gpu_binding bindings[SCENE_SLOTS];
     for (uint32_t i = 0; i < SCENE_SLOTS; i++)
-        bindings[i] = (struct gpu_binding){VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_SHADER_STAGE_FRAGMENT_BIT};
+        bindings[i] = (struct gpu_binding){.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                                           .stages = VK_SHADER_STAGE_FRAGMENT_BIT};
     s->material_layout = gpu_set_layout_create(s->gpu, bindings, SCENE_SLOTS);
     s->material_sets = calloc(s->scene->material_count, sizeof(VkDescriptorSet));
     if (!s->material_layout || !s->material_sets)
@@ -113,12 +119,13 @@ static void place_lights(struct scene_gpu *s)
     for (uint32_t i = 0; i < s->scene->light_count; i++) {
         const struct scene_light *l = &s->scene->lights[i];
         struct dvec3 p = dvec3_sub(l->position, s->origin);
-        list[i] = (struct shared_light){.position = {(float)p.x, (float)p.y, (float)p.z},
-                                        .range_m = l->range_m,
-                                        .intensity = {l->intensity[0], l->intensity[1], l->intensity[2]},
-                                        .cos_inner = l->cos_inner,
-                                        .direction = {(float)l->direction.x, (float)l->direction.y, (float)l->direction.z},
-                                        .cos_outer = l->cos_outer};
+        list[i] = (struct shared_light){
+            .position = {(float)p.x, (float)p.y, (float)p.z},
+            .range_m = l->range_m,
+            .intensity = {l->intensity[0], l->intensity[1], l->intensity[2]},
+            .cos_inner = l->cos_inner,
+            .direction = {(float)l->direction.x, (float)l->direction.y, (float)l->direction.z},
+            .cos_outer = l->cos_outer};
     }
 }
 
@@ -134,7 +141,8 @@ static bool create_geometry(struct scene_gpu *s)
     scene_pose(scene, 0, false, s->before);
     const VkDeviceSize motions = (scene->moving_count + 1) * sizeof(struct fmat4);
     return draw_list_create(s) &&
-           gpu_buffer_create_filled(gpu, "vertices", scene->vertices, scene->vertex_count * sizeof *scene->vertices,
+           gpu_buffer_create_filled(gpu, "vertices", scene->vertices,
+                                    scene->vertex_count * sizeof *scene->vertices,
                                     VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, &s->vertices) &&
            gpu_buffer_create_filled(gpu, "indices", scene->indices, scene->index_count * sizeof *scene->indices,
                                     VK_BUFFER_USAGE_INDEX_BUFFER_BIT, &s->indices) &&
@@ -219,7 +227,8 @@ static struct fmat4 motion_of(const struct scene_gpu *s, uint32_t node)
     return narrow;
 }
 
-void scene_gpu_update(struct scene_gpu *s, VkCommandBuffer cmd, struct dvec3 position, double animation_s, double before_s)
+void scene_gpu_update(struct scene_gpu *s, VkCommandBuffer cmd, struct dvec3 position, double animation_s,
+                      double before_s)
 {
     struct dvec3 origin = geometry_snap_origin(s->origin, position);
     bool moved = dvec3_length(dvec3_sub(origin, s->origin)) > 0;
@@ -245,7 +254,8 @@ void scene_gpu_update(struct scene_gpu *s, VkCommandBuffer cmd, struct dvec3 pos
     }
     s->placed = true;
     gpu_barrier(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_2_COPY_BIT);
-    vkCmdCopyBuffer(cmd, s->staging.buffer, s->objects.buffer, 1, &(VkBufferCopy){.size = count * sizeof *objects});
+    vkCmdCopyBuffer(cmd, s->staging.buffer, s->objects.buffer, 1,
+                    &(VkBufferCopy){.size = count * sizeof *objects});
     vkCmdCopyBuffer(cmd, s->staging.buffer, s->motions.buffer, 1,
                     &(VkBufferCopy){.srcOffset = s->object_count * sizeof *objects, .size = s->motions.size});
     gpu_barrier(cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);

@@ -11,7 +11,7 @@
 
 // What a bucket's pipeline must do: one bit per thing that costs something.
 enum {
-    SCENE_GPU_MASK = 1 << SCENE_SLOTS,         // alpha test
+    SCENE_GPU_MASK = 1 << SCENE_SLOTS,           // alpha test
     SCENE_GPU_EMISSIVE = 1 << (SCENE_SLOTS + 1), // emissive factor without a texture
     // bits 0..SCENE_SLOTS-1: the texture slot is used
 };
@@ -58,8 +58,8 @@ struct scene_gpu {
 struct scene_gpu *scene_gpu_create(struct gpu *gpu, const struct scene *scene);
 void scene_gpu_destroy(struct scene_gpu *scene); // NULL is fine
 
-// Moves the origin near `position`, places moving objects at `animation_s` and records the copies to the GPU. Motions
-// lead from `before_s` to `animation_s`.
+// Moves the origin near `position`, places moving objects at `animation_s` and records the copies to the GPU.
+// Motions lead from `before_s` to `animation_s`.
 void scene_gpu_update(struct scene_gpu *scene, VkCommandBuffer cmd, struct dvec3 position, double animation_s,
                       double before_s);
 

@@ -1,7 +1,7 @@
 // Types read by both C and GLSL (scalar layout), written once.
 //
-// Coordinates: world positions are relative to the frame's origin (geometry.h). Pixels are counted from the upper left
-// corner; layer 0 is the left eye.
+// Coordinates: world positions are relative to the frame's origin (geometry.h). Pixels are counted from the
+// upper left corner; layer 0 is the left eye.
 #ifndef RENDERER_SHARED_SHARED_H
 #define RENDERER_SHARED_SHARED_H
 
@@ -26,8 +26,8 @@
 #define SHARED_FLOAT float
 #endif
 
-#define SHARED_TILE 8         // work groups are 8x8 pixels
-#define SHARED_CULL_GROUP 64  // items per culling work group
+#define SHARED_TILE 8        // work groups are 8x8 pixels
+#define SHARED_CULL_GROUP 64 // items per culling work group
 
 struct shared_eye {
     SHARED_MAT4(clip_from_world);
@@ -72,9 +72,9 @@ struct shared_cull_group {
     SHARED_UINT bucket;
     SHARED_UINT first_item;
     SHARED_UINT item_count;
-    SHARED_UINT first_group;      // of the bucket
+    SHARED_UINT first_group; // of the bucket
     SHARED_UINT bucket_first_item;
-    SHARED_UINT last;             // 1: the bucket's last group
+    SHARED_UINT last; // 1: the bucket's last group
 };
 
 struct shared_object {

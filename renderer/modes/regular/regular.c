@@ -1,7 +1,7 @@
 // `regular`: deferred, full resolution, every pixel: the reference of all studies.
 //
-// G-buffer, GGX shading in compute, tone mapping with fixed luminance, as the regular renderer of Franke et al. 2021,
-// section 8.4. Cull -> G-buffer -> shade -> tone map.
+// G-buffer, GGX shading in compute, tone mapping with fixed luminance, as the regular renderer of Franke et al.
+// 2021, section 8.4. Cull -> G-buffer -> shade -> tone map.
 
 #include "renderer/modes/room.h"
 #include "renderer/passes/cull/cull.h"
@@ -40,7 +40,8 @@ static bool create_passes(struct mode_state *s, const struct mode_setup *setup)
                                           .height = setup->height,
                                           .layers = 2,
                                           .array = true,
-                                          .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT};
+                                          .usage =
+                                              VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT};
     const struct gbuffer_desc gbuffer = {.gpu = s->gpu,
                                          .scene = setup->scene,
                                          .frame = setup->frame,
@@ -83,8 +84,9 @@ static struct mode_state *create(const struct mode_setup *setup)
     }
     mode_explain(setup->explanation, cull_memory(&s->cull), "indirect draws of %u submodels for two eyes",
                  setup->scene->item_count);
-    mode_explain(setup->explanation, gbuffer_memory(&s->gbuffer), "G-buffer, %u pipelines%s", s->gbuffer.pipeline_count,
-                 s->gbuffer.has_emissive ? ", emissive because the scene glows" : "; no emissive, nothing glows");
+    mode_explain(
+        setup->explanation, gbuffer_memory(&s->gbuffer), "G-buffer, %u pipelines%s", s->gbuffer.pipeline_count,
+        s->gbuffer.has_emissive ? ", emissive because the scene glows" : "; no emissive, nothing glows");
     mode_explain(setup->explanation, s->shade.hdr.bytes, "shaded colour, linear HDR, %u local lights",
                  setup->scene->scene->light_count);
     mode_explain(setup->explanation, s->colour.bytes, "tone-mapped colour");

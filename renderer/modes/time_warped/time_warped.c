@@ -1,9 +1,11 @@
 // `time_warped`: last frame's pixels reprojected, holes filled, and only what is not trusted drawn anew.
 //
-// Franke, Fink, Martschinke, Selgrad and Stamminger, "Time-Warped Foveated Rendering for Virtual Reality Headsets",
-// Computer Graphics Forum 40(1), 2021: sections 4 (reprojection), 5.1 (hole filling), 5.2 (confidence), 6.1 (discard),
-// 6.2 (composition) and the motion of objects of section 7. We differ from the paper in this:
-// - pixels are not discarded in the fragment shader: kept pixels get the nearest depth first, so that the depth test
+// Franke, Fink, Martschinke, Selgrad and Stamminger, "Time-Warped Foveated Rendering for Virtual Reality
+// Headsets", Computer Graphics Forum 40(1), 2021: sections 4 (reprojection), 5.1 (hole filling), 5.2
+// (confidence), 6.1 (discard), 6.2 (composition) and the motion of objects of section 7. We differ from the
+// paper in this:
+// - pixels are not discarded in the fragment shader: kept pixels get the nearest depth first, so that the depth
+// test
 //   rejects their fragments before they are shaded;
 // - the pyramid ends where A^m < epsilon, since deeper holes are redrawn whatever their colour.
 
@@ -22,10 +24,12 @@
 enum { EPSILON, FOVEA_DEG, PERIPHERY_DEG, HOLE_DECAY, DYNAMIC_DECAY };
 
 static const struct mode_parameter parameters[] = {
-    [EPSILON] = {"epsilon", "", "confidence under which a pixel is drawn anew; 1 draws everything, 0 nothing", 0, 1, 0.2,
-                 NULL},
-    [FOVEA_DEG] = {"fovea_deg", "deg", "eccentricity within which every pixel is drawn anew (phi_F)", 0, 90, 10, NULL},
-    [PERIPHERY_DEG] = {"periphery_deg", "deg", "eccentricity of full trust (phi_0); above fovea_deg", 0, 180, 30, NULL},
+    [EPSILON] = {"epsilon", "", "confidence under which a pixel is drawn anew; 1 draws everything, 0 nothing",
+                 0, 1, 0.2, NULL},
+    [FOVEA_DEG] = {"fovea_deg", "deg", "eccentricity within which every pixel is drawn anew (phi_F)", 0, 90, 10,
+                   NULL},
+    [PERIPHERY_DEG] = {"periphery_deg", "deg", "eccentricity of full trust (phi_0); above fovea_deg", 0, 180,
+                       30, NULL},
     [HOLE_DECAY] = {"hole_decay", "", "trust lost per pyramid level of a filled hole (A)", 0, 1, 0.6, NULL},
     [DYNAMIC_DECAY] = {"dynamic_decay", "", "trust lost per frame on moving objects (D)", 0, 1, 0.75, NULL},
 };
@@ -51,7 +55,8 @@ static bool supported(const struct gpu *gpu, char *why, size_t why_size)
 {
     if (gpu->int64_atomics)
         return true;
-    snprintf(why, why_size, "time_warped needs 64-bit atomics on storage buffers (shaderBufferInt64Atomics), which %s lacks",
+    snprintf(why, why_size,
+             "time_warped needs 64-bit atomics on storage buffers (shaderBufferInt64Atomics), which %s lacks",
              gpu->properties.deviceName);
     return false;
 }
@@ -75,8 +80,8 @@ static void destroy(struct mode_state *s)
     free(s);
 }
 
-static bool create_image(struct mode_state *s, const struct mode_setup *setup, const char *name, VkFormat format,
-                         struct gpu_image *out)
+static bool create_image(struct mode_state *s, const struct mode_setup *setup, const char *name,
+                         VkFormat format, struct gpu_image *out)
 {
     const VkImageUsageFlags usage =
         VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
@@ -110,7 +115,8 @@ static bool create_drawing(struct mode_state *s, const struct mode_setup *setup)
                                          .height = setup->height,
                                          .ids = setup->scene->scene->moving_count > 0,
                                          .redraw_map = s->redraw_map.view};
-    if (!cull_init(&s->cull, s->gpu, setup->scene, setup->frame, setup->counters) || !gbuffer_init(&s->gbuffer, &gbuffer))
+    if (!cull_init(&s->cull, s->gpu, setup->scene, setup->frame, setup->counters) ||
+        !gbuffer_init(&s->gbuffer, &gbuffer))
         return false;
     const struct shade_desc shade = {.gpu = s->gpu,
                                      .frame = setup->frame,
@@ -173,13 +179,17 @@ static void explain(const struct mode_state *s, const struct mode_setup *setup)
 {
     struct mode_explanation *e = setup->explanation;
     const uint32_t moving = setup->scene->scene->moving_count;
-    mode_explain(e, cull_memory(&s->cull), "indirect draws of %u submodels for two eyes", setup->scene->item_count);
+    mode_explain(e, cull_memory(&s->cull), "indirect draws of %u submodels for two eyes",
+                 setup->scene->item_count);
     mode_explain(e, gbuffer_memory(&s->gbuffer), "G-buffer, %u pipelines%s%s", s->gbuffer.pipeline_count,
-                 s->gbuffer.has_emissive ? ", emissive because the scene glows" : "; no emissive, nothing glows",
+                 s->gbuffer.has_emissive ? ", emissive because the scene glows"
+                                         : "; no emissive, nothing glows",
                  moving ? ", ids because objects move" : "; no ids, nothing moves");
-    mode_explain(e, s->shade.hdr.bytes, "shaded colour, linear HDR, %u local lights", setup->scene->scene->light_count);
+    mode_explain(e, s->shade.hdr.bytes, "shaded colour, linear HDR, %u local lights",
+                 setup->scene->scene->light_count);
     mode_explain(e, s->colour[0].bytes + s->colour[1].bytes, "tone-mapped colour of this and the last frame");
-    mode_explain(e, s->position[0].bytes + s->position[1].bytes, "world positions of this and the last frame, 128 bit");
+    mode_explain(e, s->position[0].bytes + s->position[1].bytes,
+                 "world positions of this and the last frame, 128 bit");
     mode_explain(e, s->reproject.keys.size, "reprojection keys, 64 bit");
     mode_explain(e, s->pyramid.image.bytes, "pull-push pyramid, %u levels because A^m < epsilon beyond",
                  s->pyramid.confidence.levels);
@@ -208,7 +218,8 @@ static void mark_all(struct mode_state *s, struct gpu_frame *f)
     VkCommandBuffer cmd = gpu_timer_begin(f, "redraw map");
     const VkImageSubresourceRange all = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 2};
     gpu_barrier(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
-    vkCmdClearColorImage(cmd, s->redraw_map.image, VK_IMAGE_LAYOUT_GENERAL, &(VkClearColorValue){.uint32 = {1}}, 1, &all);
+    vkCmdClearColorImage(cmd, s->redraw_map.image, VK_IMAGE_LAYOUT_GENERAL, &(VkClearColorValue){.uint32 = {1}},
+                         1, &all);
     gpu_barrier(cmd, VK_PIPELINE_STAGE_2_CLEAR_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
     gpu_timer_end(f);
 }
@@ -216,7 +227,8 @@ static void mark_all(struct mode_state *s, struct gpu_frame *f)
 static void warp(struct mode_state *s, struct gpu_frame *f, uint32_t target)
 {
     // epsilon 0 redraws nothing, so the fovea must come from the last frame too
-    reproject_record(&s->reproject, gpu_timer_begin(f, "reproject"), s->last, s->epsilon > 0 ? s->fovea_deg : 0);
+    reproject_record(&s->reproject, gpu_timer_begin(f, "reproject"), s->last,
+                     s->epsilon > 0 ? s->fovea_deg : 0);
     gpu_timer_end(f);
     pyramid_pull(&s->pyramid, gpu_timer_begin(f, "pull"), target);
     gpu_timer_end(f);
@@ -232,7 +244,8 @@ static bool record(struct mode_state *s, const struct mode_record *record)
     const uint32_t target = 1 - s->last;
     const bool warped = record->history && s->in_use && s->epsilon < 1;
     if (!s->in_use) {
-        const struct gpu_image *images[] = {&s->colour[0], &s->colour[1], &s->position[0], &s->position[1], &s->redraw_map};
+        const struct gpu_image *images[] = {&s->colour[0], &s->colour[1], &s->position[0], &s->position[1],
+                                            &s->redraw_map};
         for (size_t i = 0; i < countof(images); i++)
             gpu_image_layout(f->cmd, images[i], VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
     }

@@ -3,27 +3,31 @@
 #include "renderer/shared/shared.h"
 
 #include "compose.comp.h"
+#include "compose.comp_id.h"
 
-static const struct gpu_binding bindings[] = {
-    {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},         // frame
-    {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 0}, // depth
-    {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 0},          // redraw map
-    {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 0},          // position
-    {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 0}, // id, last: absent where nothing moves
+#include <string.h>
+
+enum { ID = 4, BINDINGS };
+
+static const struct gpu_binding all_bindings[BINDINGS] = {
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},         // frame
+    {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, // depth
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},          // redraw map
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},          // position
+    {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, // id, where something moves
 };
 
 bool compose_init(struct compose *c, const struct compose_desc *desc)
 {
     *c = (struct compose){.gpu = desc->gpu, .width = desc->width, .height = desc->height};
-    const int32_t has_id = desc->id != VK_NULL_HANDLE;
-    const struct gpu_kernel_desc kernel = {.name = "compose",
-                                           .code = {compose_comp, sizeof compose_comp},
-                                           .bindings = bindings,
-                                           .binding_count = countof(bindings),
-                                           .constants = &has_id,
-                                           .constant_count = 1};
-    c->sampler = gpu_sampler_create(c->gpu, VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
-                                    VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE, 1);
+    struct gpu_binding bindings[BINDINGS];
+    memcpy(bindings, all_bindings, sizeof bindings);
+    bindings[ID].absent = !desc->id;
+    const struct gpu_code code = desc->id ? (struct gpu_code){compose_comp_id, sizeof compose_comp_id}
+                                          : (struct gpu_code){compose_comp, sizeof compose_comp};
+    const struct gpu_kernel_desc kernel = {
+        .name = "compose", .code = code, .bindings = bindings, .binding_count = countof(bindings)};
+    c->sampler = gpu_sampler_create_plain(c->gpu);
     if (!c->sampler || !gpu_kernel_create(c->gpu, &kernel, &c->kernel))
         return false;
     for (uint32_t target = 0; target < 2; target++) {
@@ -34,8 +38,7 @@ bool compose_init(struct compose *c, const struct compose_desc *desc)
             {.view = desc->position[target]},
             {.view = desc->id, .sampler = c->sampler, .layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL},
         };
-        c->sets[target] = gpu_set_create(c->gpu, c->kernel.set_layout, bindings, resources,
-                                         countof(bindings) - (has_id ? 0 : 1));
+        c->sets[target] = gpu_set_create(c->gpu, c->kernel.set_layout, bindings, resources, countof(bindings));
         if (!c->sets[target])
             return false;
     }

@@ -5,13 +5,14 @@
 #include "renderer/shared/view.glsl"
 
 layout(local_size_x = SHARED_TILE, local_size_y = SHARED_TILE) in;
-layout(constant_id = 0) const bool has_id = false;
 
 layout(scalar, binding = 0) readonly buffer Frame { shared_frame frame; };
 layout(binding = 1) uniform sampler2DArray depth_image;
 layout(binding = 2, r8ui) uniform readonly uimage2DArray redraw_map;
 layout(binding = 3, rgba32f) uniform writeonly image2DArray position_image;
+#ifdef ID
 layout(binding = 4) uniform usampler2DArray id_image;
+#endif
 
 void main()
 {
@@ -25,8 +26,9 @@ void main()
     vec4 position = vec4(normalize(direction), -1.0);
     if (depth > 0.0) {
         position = vec4(world_from_eye[3].xyz + direction * (frame.near_m / depth), 1.0);
-        if (has_id)
-            position.w += float(texelFetch(id_image, pixel, 0).x);
+#ifdef ID
+        position.w += float(texelFetch(id_image, pixel, 0).x);
+#endif
     }
     imageStore(position_image, pixel, position);
 }

@@ -1,5 +1,6 @@
-// Gives every redrawn pixel its exact world position for the next frame's reprojection. Franke et al. 2021, sections 4
-// and 6.2: with the redrawn colours, which the tone-mapping pass writes in place, this completes the composed image.
+// Gives every redrawn pixel its exact world position for the next frame's reprojection. Franke et al. 2021,
+// sections 4 and 6.2: with the redrawn colours, which the tone-mapping pass writes in place, this completes the
+// composed image.
 #ifndef RENDERER_PASSES_COMPOSE_COMPOSE_H
 #define RENDERER_PASSES_COMPOSE_COMPOSE_H
 

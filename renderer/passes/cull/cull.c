@@ -4,23 +4,23 @@
 #include "cull_emit.comp.h"
 
 static const struct gpu_binding count_bindings[] = {
-    {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0}, // frame
-    {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0}, // items
-    {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0}, // objects
-    {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0}, // groups
-    {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0}, // visible
-    {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0}, // group counts
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // frame
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // items
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // objects
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // groups
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // visible
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // group counts
 };
 
 static const struct gpu_binding emit_bindings[] = {
-    {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0}, // frame
-    {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0}, // items
-    {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0}, // groups
-    {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0}, // visible
-    {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0}, // group counts
-    {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0}, // draws
-    {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0}, // draw counts
-    {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0}, // counters
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // frame
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // items
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // groups
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // visible
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // group counts
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // draws
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // draw counts
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // counters
 };
 
 static bool create_buffers(struct cull *c)
@@ -28,14 +28,14 @@ static bool create_buffers(struct cull *c)
     const struct scene_gpu *s = c->scene;
     const VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
     const VkBufferUsageFlags indirect = storage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
-    return gpu_buffer_create(c->gpu, "visible items", 2ull * s->item_count * sizeof(uint32_t), storage, GPU_DEVICE,
-                             &c->visible) &&
-           gpu_buffer_create(c->gpu, "group counts", 2ull * s->group_count * sizeof(uint32_t), storage, GPU_DEVICE,
-                             &c->group_counts) &&
-           gpu_buffer_create(c->gpu, "draws", 2ull * s->item_count * sizeof(struct shared_draw), indirect, GPU_DEVICE,
-                             &c->draws) &&
-           gpu_buffer_create(c->gpu, "draw counts", 2ull * s->bucket_count * sizeof(uint32_t), indirect, GPU_DEVICE,
-                             &c->draw_counts);
+    return gpu_buffer_create(c->gpu, "visible items", 2ull * s->item_count * sizeof(uint32_t), storage,
+                             GPU_DEVICE, &c->visible) &&
+           gpu_buffer_create(c->gpu, "group counts", 2ull * s->group_count * sizeof(uint32_t), storage,
+                             GPU_DEVICE, &c->group_counts) &&
+           gpu_buffer_create(c->gpu, "draws", 2ull * s->item_count * sizeof(struct shared_draw), indirect,
+                             GPU_DEVICE, &c->draws) &&
+           gpu_buffer_create(c->gpu, "draw counts", 2ull * s->bucket_count * sizeof(uint32_t), indirect,
+                             GPU_DEVICE, &c->draw_counts);
 }
 
 bool cull_init(struct cull *c, struct gpu *gpu, const struct scene_gpu *scene, const struct gpu_buffer *frame,
@@ -53,18 +53,22 @@ bool cull_init(struct cull *c, struct gpu *gpu, const struct scene_gpu *scene, c
                                          .binding_count = countof(emit_bindings),
                                          .constants = &buckets,
                                          .constant_count = 1};
-    if (!create_buffers(c) || !gpu_kernel_create(gpu, &count, &c->count) || !gpu_kernel_create(gpu, &emit, &c->emit))
+    if (!create_buffers(c) || !gpu_kernel_create(gpu, &count, &c->count) ||
+        !gpu_kernel_create(gpu, &emit, &c->emit))
         return false;
     const struct gpu_resource count_resources[] = {
         {.buffer = frame},          {.buffer = &scene->items}, {.buffer = &scene->objects},
         {.buffer = &scene->groups}, {.buffer = &c->visible},   {.buffer = &c->group_counts},
     };
     const struct gpu_resource emit_resources[] = {
-        {.buffer = frame},            {.buffer = &scene->items}, {.buffer = &scene->groups},  {.buffer = &c->visible},
-        {.buffer = &c->group_counts}, {.buffer = &c->draws},     {.buffer = &c->draw_counts}, {.buffer = counters},
+        {.buffer = frame},           {.buffer = &scene->items},    {.buffer = &scene->groups},
+        {.buffer = &c->visible},     {.buffer = &c->group_counts}, {.buffer = &c->draws},
+        {.buffer = &c->draw_counts}, {.buffer = counters},
     };
-    c->count_set = gpu_set_create(gpu, c->count.set_layout, count_bindings, count_resources, countof(count_resources));
-    c->emit_set = gpu_set_create(gpu, c->emit.set_layout, emit_bindings, emit_resources, countof(emit_resources));
+    c->count_set =
+        gpu_set_create(gpu, c->count.set_layout, count_bindings, count_resources, countof(count_resources));
+    c->emit_set =
+        gpu_set_create(gpu, c->emit.set_layout, emit_bindings, emit_resources, countof(emit_resources));
     return c->count_set && c->emit_set;
 }
 

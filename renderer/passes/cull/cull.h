@@ -1,7 +1,8 @@
 // Frustum culling of submodels on the GPU, for both eyes: writes compacted indirect draws bucket by bucket.
 //
-// The order of the draws is the order of the items, whatever the device's timing, so that equal depths resolve alike
-// in every run. Compaction after Blelloch's scan, one level: groups of SHARED_CULL_GROUP items count, then place.
+// The order of the draws is the order of the items, whatever the device's timing, so that equal depths resolve
+// alike in every run. Compaction after Blelloch's scan, one level: groups of SHARED_CULL_GROUP items count,
+// then place.
 #ifndef RENDERER_PASSES_CULL_CULL_H
 #define RENDERER_PASSES_CULL_CULL_H
 
@@ -14,12 +15,12 @@ struct cull {
     VkDescriptorSet count_set, emit_set;
     struct gpu_buffer visible;      // per eye and item: 1 where it may be seen
     struct gpu_buffer group_counts; // per eye and group
-    struct gpu_buffer draws;        // shared_draw, per eye and item slot; a bucket's draws start at its first item
-    struct gpu_buffer draw_counts;  // per eye and bucket
+    struct gpu_buffer draws; // shared_draw, per eye and item slot; a bucket's draws start at its first item
+    struct gpu_buffer draw_counts; // per eye and bucket
 };
 
-bool cull_init(struct cull *cull, struct gpu *gpu, const struct scene_gpu *scene, const struct gpu_buffer *frame,
-               const struct gpu_buffer *counters);
+bool cull_init(struct cull *cull, struct gpu *gpu, const struct scene_gpu *scene,
+               const struct gpu_buffer *frame, const struct gpu_buffer *counters);
 void cull_finish(struct cull *cull);
 uint64_t cull_memory(const struct cull *cull);
 // Leaves draws and draw_counts ready for indirect drawing.

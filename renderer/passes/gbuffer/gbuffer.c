@@ -1,6 +1,9 @@
 #include "renderer/passes/gbuffer/gbuffer.h"
 
 #include "gbuffer.frag.h"
+#include "gbuffer.frag_emissive.h"
+#include "gbuffer.frag_emissive_id.h"
+#include "gbuffer.frag_id.h"
 #include "gbuffer.vert.h"
 #include "mask.frag.h"
 #include "mask.vert.h"
@@ -67,10 +70,10 @@ static bool create_targets(struct gbuffer *g)
 static bool create_layouts(struct gbuffer *g, const struct gpu_buffer *frame)
 {
     const VkShaderStageFlags both = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
-    const struct gpu_binding bindings[] = {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, both},
-                                           {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, both},
-                                           {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, both},
-                                           {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, both}};
+    const struct gpu_binding bindings[] = {{.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, .stages = both},
+                                           {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, .stages = both},
+                                           {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, .stages = both},
+                                           {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, .stages = both}};
     const struct gpu_resource resources[] = {{.buffer = frame},
                                              {.buffer = &g->scene->items},
                                              {.buffer = &g->scene->objects},
@@ -87,6 +90,15 @@ static bool create_layouts(struct gbuffer *g, const struct gpu_buffer *frame)
         .pPushConstantRanges = &(VkPushConstantRange){VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof(uint32_t)},
     };
     return g->frame_set && VK(g->gpu, vkCreatePipelineLayout(g->gpu->device, &info, NULL, &g->layout));
+}
+
+static struct gpu_code fragment_code(const struct gbuffer *g)
+{
+    if (g->has_emissive)
+        return g->has_id ? (struct gpu_code){gbuffer_frag_emissive_id, sizeof gbuffer_frag_emissive_id}
+                         : (struct gpu_code){gbuffer_frag_emissive, sizeof gbuffer_frag_emissive};
+    return g->has_id ? (struct gpu_code){gbuffer_frag_id, sizeof gbuffer_frag_id}
+                     : (struct gpu_code){gbuffer_frag, sizeof gbuffer_frag};
 }
 
 // One pipeline for every set of features that occurs in the scene.
@@ -115,7 +127,7 @@ static bool create_pipelines(struct gbuffer *g)
         VkPipeline pipeline =
             gpu_raster_create(g->gpu, &(struct gpu_raster_desc){.name = "g-buffer",
                                                                 .vertex = {gbuffer_vert, sizeof gbuffer_vert},
-                                                                .fragment = {gbuffer_frag, sizeof gbuffer_frag},
+                                                                .fragment = fragment_code(g),
                                                                 .layout = g->layout,
                                                                 .vertex_binding = &vertex_binding,
                                                                 .attributes = attributes,
@@ -136,11 +148,13 @@ static bool create_pipelines(struct gbuffer *g)
 
 static bool create_mask(struct gbuffer *g, VkImageView redraw_map)
 {
-    const struct gpu_binding binding = {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_SHADER_STAGE_FRAGMENT_BIT};
+    const struct gpu_binding binding = {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
+                                        .stages = VK_SHADER_STAGE_FRAGMENT_BIT};
     g->mask_set_layout = gpu_set_layout_create(g->gpu, &binding, 1);
     if (!g->mask_set_layout)
         return false;
-    g->mask_set = gpu_set_create(g->gpu, g->mask_set_layout, &binding, &(struct gpu_resource){.view = redraw_map}, 1);
+    g->mask_set =
+        gpu_set_create(g->gpu, g->mask_set_layout, &binding, &(struct gpu_resource){.view = redraw_map}, 1);
     const VkPipelineLayoutCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
         .setLayoutCount = 1,
@@ -193,7 +207,8 @@ void gbuffer_finish(struct gbuffer *g)
 
 uint64_t gbuffer_memory(const struct gbuffer *g)
 {
-    return g->base.bytes + g->normal.bytes + g->surface.bytes + g->emissive.bytes + g->id.bytes + g->depth.bytes;
+    return g->base.bytes + g->normal.bytes + g->surface.bytes + g->emissive.bytes + g->id.bytes +
+           g->depth.bytes;
 }
 
 static void draw_mask(const struct gbuffer *g, VkCommandBuffer cmd, uint32_t eye)
@@ -229,10 +244,11 @@ static void draw_buckets(const struct gbuffer *g, VkCommandBuffer cmd, const str
                                 &s->material_sets[bucket->material], 0, NULL);
         vkCmdSetCullMode(cmd, bucket->double_sided ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT);
         vkCmdSetFrontFace(cmd, bucket->mirrored ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE);
-        vkCmdDrawIndexedIndirectCount(cmd, draws->buffer,
-                                      ((VkDeviceSize)eye * s->item_count + bucket->first_item) * sizeof(struct shared_draw),
-                                      draw_counts->buffer, ((VkDeviceSize)eye * s->bucket_count + b) * sizeof(uint32_t),
-                                      bucket->item_count, sizeof(struct shared_draw));
+        vkCmdDrawIndexedIndirectCount(
+            cmd, draws->buffer,
+            ((VkDeviceSize)eye * s->item_count + bucket->first_item) * sizeof(struct shared_draw),
+            draw_counts->buffer, ((VkDeviceSize)eye * s->bucket_count + b) * sizeof(uint32_t),
+            bucket->item_count, sizeof(struct shared_draw));
     }
 }
 
@@ -243,19 +259,20 @@ void gbuffer_record(const struct gbuffer *g, VkCommandBuffer cmd, const struct g
     targets(g, images);
     for (uint32_t i = 0; i < TARGETS; i++) {
         if (images[i])
-            gpu_image_layout(cmd, images[i], VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+            gpu_image_layout(cmd, images[i], VK_IMAGE_LAYOUT_UNDEFINED,
+                             VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
     }
     gpu_image_layout(cmd, &g->depth, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
     for (uint32_t eye = 0; eye < 2; eye++) {
         VkRenderingAttachmentInfo colours[TARGETS];
         for (uint32_t i = 0; i < TARGETS; i++)
-            colours[i] = (VkRenderingAttachmentInfo){.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
-                                                     .imageView = images[i] ? images[i]->layer_views[eye] : VK_NULL_HANDLE,
-                                                     .imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-                                                     // the id of the background is 0; the rest is read only under depth
-                                                     .loadOp = i == 4 ? VK_ATTACHMENT_LOAD_OP_CLEAR
-                                                                      : VK_ATTACHMENT_LOAD_OP_DONT_CARE,
-                                                     .storeOp = VK_ATTACHMENT_STORE_OP_STORE};
+            colours[i] = (VkRenderingAttachmentInfo){
+                .sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
+                .imageView = images[i] ? images[i]->layer_views[eye] : VK_NULL_HANDLE,
+                .imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                // the id of the background is 0; the rest is read only under depth
+                .loadOp = i == 4 ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_DONT_CARE,
+                .storeOp = VK_ATTACHMENT_STORE_OP_STORE};
         const VkRenderingAttachmentInfo depth = {.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
                                                  .imageView = g->depth.layer_views[eye],
                                                  .imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
@@ -273,7 +290,8 @@ void gbuffer_record(const struct gbuffer *g, VkCommandBuffer cmd, const struct g
             vkCmdBeginRendering(cmd, &info);
             draw_mask(g, cmd, eye);
             vkCmdEndRendering(cmd);
-            gpu_barrier(cmd, VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT, VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT);
+            gpu_barrier(cmd, VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
+                        VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT);
             kept.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
         }
         info.pDepthAttachment = &kept;
@@ -288,5 +306,6 @@ void gbuffer_record(const struct gbuffer *g, VkCommandBuffer cmd, const struct g
             gpu_image_layout(cmd, images[i], VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
                              VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     }
-    gpu_image_layout(cmd, &g->depth, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL);
+    gpu_image_layout(cmd, &g->depth, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
+                     VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL);
 }

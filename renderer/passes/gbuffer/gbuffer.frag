@@ -4,6 +4,8 @@
 #include "renderer/shared/shared.h"
 #include "renderer/shared/normal.glsl"
 
+// EMISSIVE and ID: the scene has those targets
+
 layout(constant_id = 0) const bool has_base = false;
 layout(constant_id = 1) const bool has_metallic_roughness = false;
 layout(constant_id = 2) const bool has_normal = false;
@@ -21,36 +23,32 @@ layout(set = 1, binding = 4) uniform sampler2D emissive_texture;
 
 layout(location = 0) in vec3 in_normal;
 layout(location = 1) in vec4 in_tangent;
-layout(location = 2) in vec4 in_uv;
-layout(location = 3) in vec4 in_colour;
-layout(location = 4) flat in uvec2 in_ids;
+layout(location = 2) in vec4 in_colour;
+layout(location = 3) flat in uvec2 in_ids;
+layout(location = 4) in vec2 in_uv[5];
 
 layout(location = 0) out vec4 out_base;
 layout(location = 1) out uint out_normal;
 layout(location = 2) out vec4 out_surface;
+#ifdef EMISSIVE
 layout(location = 3) out vec4 out_emissive;
+#endif
+#ifdef ID
 layout(location = 4) out uint out_id;
-
-vec2 uv_of(shared_material m, uint slot)
-{
-    vec3 uv = vec3((m.uv_sets >> slot & 1u) != 0u ? in_uv.zw : in_uv.xy, 1.0);
-    uint t = 6u * slot;
-    return vec2(dot(uv, vec3(m.transforms[t], m.transforms[t + 1], m.transforms[t + 2])),
-                dot(uv, vec3(m.transforms[t + 3], m.transforms[t + 4], m.transforms[t + 5])));
-}
+#endif
 
 void main()
 {
     shared_material m = materials[in_ids.x];
     vec4 base = m.base_colour * in_colour;
     if (has_base)
-        base *= texture(base_texture, uv_of(m, 0));
+        base *= texture(base_texture, in_uv[0]);
     if (alpha_mask && base.a < m.alpha_cutoff)
         discard;
 
     vec3 normal = normalize(in_normal);
     if (has_normal) {
-        vec3 t = texture(normal_texture, uv_of(m, 2)).xyz * 2.0 - 1.0;
+        vec3 t = texture(normal_texture, in_uv[2]).xyz * 2.0 - 1.0;
         t.xy *= m.normal_scale;
         vec3 tangent = normalize(in_tangent.xyz - normal * dot(normal, in_tangent.xyz));
         vec3 bitangent = cross(normal, tangent) * in_tangent.w;
@@ -61,19 +59,23 @@ void main()
 
     vec2 surface = vec2(m.roughness, m.metallic);
     if (has_metallic_roughness)
-        surface *= texture(metallic_roughness_texture, uv_of(m, 1)).gb;
+        surface *= texture(metallic_roughness_texture, in_uv[1]).gb;
     float occlusion = 1.0;
     if (has_occlusion)
-        occlusion = mix(1.0, texture(occlusion_texture, uv_of(m, 3)).r, m.occlusion_strength);
+        occlusion = mix(1.0, texture(occlusion_texture, in_uv[3]).r, m.occlusion_strength);
+    out_base = vec4(base.rgb, occlusion);
+    out_normal = packSnorm2x16(normal_encode(normal));
+    out_surface = vec4(surface, 0.0, 0.0);
+#ifdef EMISSIVE
     vec3 emissive = vec3(0.0);
     if (glows) {
         emissive = m.emissive;
         if (has_emissive)
-            emissive *= texture(emissive_texture, uv_of(m, 4)).rgb;
+            emissive *= texture(emissive_texture, in_uv[4]).rgb;
     }
-    out_base = vec4(base.rgb, occlusion);
-    out_normal = packSnorm2x16(normal_encode(normal));
-    out_surface = vec4(surface, 0.0, 0.0);
     out_emissive = vec4(emissive, 0.0);
+#endif
+#ifdef ID
     out_id = in_ids.y;
+#endif
 }

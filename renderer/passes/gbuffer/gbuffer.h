@@ -1,7 +1,7 @@
 // Draws the scene's surfaces: what a later pass needs to shade each pixel.
 //
-// Reversed depth, GREATER: 0 is infinity. With `kept` set, pixels whose depth was written before (gbuffer_mask) stay
-// untouched: nearer than anything, they reject every fragment before it is shaded.
+// Reversed depth, GREATER: 0 is infinity. With `kept` set, pixels whose depth was written before (gbuffer_mask)
+// stay untouched: nearer than anything, they reject every fragment before it is shaded.
 #ifndef RENDERER_PASSES_GBUFFER_GBUFFER_H
 #define RENDERER_PASSES_GBUFFER_GBUFFER_H
 
@@ -49,8 +49,8 @@ bool gbuffer_init(struct gbuffer *gbuffer, const struct gbuffer_desc *desc);
 void gbuffer_finish(struct gbuffer *gbuffer);
 uint64_t gbuffer_memory(const struct gbuffer *gbuffer);
 
-// Draws both eyes from the culled draws. `masked`: only pixels whose redraw map is not 0. Leaves all targets readable by compute
-// (SHADER_READ_ONLY_OPTIMAL, depth DEPTH_READ_ONLY_OPTIMAL).
+// Draws both eyes from the culled draws. `masked`: only pixels whose redraw map is not 0. Leaves all targets
+// readable by compute (SHADER_READ_ONLY_OPTIMAL, depth DEPTH_READ_ONLY_OPTIMAL).
 void gbuffer_record(const struct gbuffer *gbuffer, VkCommandBuffer cmd, const struct gpu_buffer *draws,
                     const struct gpu_buffer *draw_counts, bool masked);
 

@@ -7,6 +7,7 @@
 layout(scalar, set = 0, binding = 0) readonly buffer Frame { shared_frame frame; };
 layout(scalar, set = 0, binding = 1) readonly buffer Items { shared_item items[]; };
 layout(scalar, set = 0, binding = 2) readonly buffer Objects { shared_object objects[]; };
+layout(scalar, set = 0, binding = 3) readonly buffer Materials { shared_material materials[]; };
 layout(push_constant) uniform Push { uint eye; } push;
 
 layout(location = 0) in vec3 in_position;
@@ -18,11 +19,19 @@ layout(location = 5) in vec4 in_colour;
 
 layout(location = 0) out vec3 out_normal;
 layout(location = 1) out vec4 out_tangent;
-layout(location = 2) out vec4 out_uv; // both sets
-layout(location = 3) out vec4 out_colour;
-layout(location = 4) flat out uvec2 out_ids; // material, moving id
+layout(location = 2) out vec4 out_colour;
+layout(location = 3) flat out uvec2 out_ids; // material, moving id
+layout(location = 4) out vec2 out_uv[5];     // one per texture slot
 
-invariant gl_Position; // the same pixels in every mode
+// Here and not in the fragment shader: the software driver gives lanes outside a triangle no buffer data, and
+// without it the texture level at every triangle's edge is wrong.
+vec2 uv_of(shared_material m, uint slot)
+{
+    vec3 uv = vec3((m.uv_sets >> slot & 1u) != 0u ? in_uv1 : in_uv0, 1.0);
+    uint t = 6u * slot;
+    return vec2(dot(uv, vec3(m.transforms[t], m.transforms[t + 1], m.transforms[t + 2])),
+                dot(uv, vec3(m.transforms[t + 3], m.transforms[t + 4], m.transforms[t + 5])));
+}
 
 void main()
 {
@@ -35,7 +44,8 @@ void main()
     float winding = dot(linear[0], cofactor[0]) < 0.0 ? -1.0 : 1.0;
     out_normal = winding * (cofactor * normal_decode(in_normal));
     out_tangent = vec4(linear * in_tangent.xyz, winding * (in_tangent.w < 0.0 ? -1.0 : 1.0));
-    out_uv = vec4(in_uv0, in_uv1);
+    for (uint slot = 0; slot < 5; slot++)
+        out_uv[slot] = uv_of(materials[item.material], slot);
     out_colour = in_colour;
     out_ids = uvec2(item.material, objects[item.object].moving_id);
 }

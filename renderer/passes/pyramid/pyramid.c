@@ -8,22 +8,21 @@
 enum { LEVELS_PER_PULL = 3 }; // an 8x8 tile comes down to one pixel
 
 static const struct gpu_binding pull_bindings[] = {
-    {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},         // frame
-    {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 0},          // colour
-    {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 0},          // position
-    {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 0},          // the level that is read, after the first dispatch
-    {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 0},          // three levels that are written
-    {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 0},
-    {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 0},
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // frame
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},  // colour
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},  // position
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},  // the level that is read, after the first dispatch
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},  // three levels that are written
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},  {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
 };
 
 static const struct gpu_binding fill_bindings[] = {
-    {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},         // frame
-    {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},         // counters
-    {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 0},          // colour
-    {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 0},          // position
-    {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 0}, // pyramid
-    {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 0},          // redraw map
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},         // frame
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},         // counters
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},          // colour
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},          // position
+    {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, // pyramid
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},          // redraw map
 };
 
 struct pull_push {
@@ -75,11 +74,15 @@ static bool create_sets(struct pyramid *p, const struct pyramid_desc *desc)
                 return false;
         }
         const struct gpu_resource resources[] = {
-            {.buffer = desc->frame},          {.buffer = desc->counters},
-            {.view = desc->colour[target]},   {.view = desc->position[target]},
-            {.view = p->image.view, .sampler = p->sampler}, {.view = desc->redraw_map},
+            {.buffer = desc->frame},
+            {.buffer = desc->counters},
+            {.view = desc->colour[target]},
+            {.view = desc->position[target]},
+            {.view = p->image.view, .sampler = p->sampler},
+            {.view = desc->redraw_map},
         };
-        p->fill_sets[target] = gpu_set_create(p->gpu, p->fill.set_layout, fill_bindings, resources, countof(resources));
+        p->fill_sets[target] =
+            gpu_set_create(p->gpu, p->fill.set_layout, fill_bindings, resources, countof(resources));
         if (!p->fill_sets[target])
             return false;
     }
@@ -90,7 +93,8 @@ bool pyramid_init(struct pyramid *p, const struct pyramid_desc *desc)
 {
     *p = (struct pyramid){
         .gpu = desc->gpu, .width = desc->width, .height = desc->height, .confidence = desc->confidence};
-    const uint32_t levels = pyramid_levels(p->width, p->height, desc->confidence.epsilon, desc->confidence.hole_decay);
+    const uint32_t levels =
+        pyramid_levels(p->width, p->height, desc->confidence.epsilon, desc->confidence.hole_decay);
     p->confidence.levels = levels;
     const struct gpu_image_desc image = {.name = "pull-push pyramid",
                                          .format = VK_FORMAT_R16G16B16A16_SFLOAT,
@@ -118,8 +122,7 @@ bool pyramid_init(struct pyramid *p, const struct pyramid_desc *desc)
         if (!p->level_views[level])
             return false;
     }
-    p->sampler = gpu_sampler_create(p->gpu, VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
-                                    VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE, 1);
+    p->sampler = gpu_sampler_create_plain(p->gpu);
     return p->sampler && create_sets(p, desc);
 }
 
@@ -150,8 +153,8 @@ void pyramid_pull(const struct pyramid *p, VkCommandBuffer cmd, uint32_t target)
         const uint32_t first = d * LEVELS_PER_PULL, left = levels - first;
         const struct pull_push push = {d == 0, left < LEVELS_PER_PULL ? left : LEVELS_PER_PULL};
         const uint32_t width = padded(p->width, levels) >> first, height = padded(p->height, levels) >> first;
-        gpu_dispatch(cmd, &p->pull, p->pull_sets[target][d], &push, sizeof push, (width + SHARED_TILE - 1) / SHARED_TILE,
-                     (height + SHARED_TILE - 1) / SHARED_TILE, 2);
+        gpu_dispatch(cmd, &p->pull, p->pull_sets[target][d], &push, sizeof push,
+                     (width + SHARED_TILE - 1) / SHARED_TILE, (height + SHARED_TILE - 1) / SHARED_TILE, 2);
         gpu_barrier(cmd, compute, compute);
     }
 }

@@ -1,8 +1,8 @@
 // Hole filling and confidence: Franke et al. 2021, sections 5.1 and 5.2.
 //
-// Pull: a mip pyramid of the valid reprojected colours, whose alpha is the contrast confidence of the four inputs
-// (0: none valid). Fill: a hole takes the finest level that has a value there; the confidence of every pixel decides
-// whether it is redrawn.
+// Pull: a mip pyramid of the valid reprojected colours, whose alpha is the contrast confidence of the four
+// inputs (0: none valid). Fill: a hole takes the finest level that has a value there; the confidence of every
+// pixel decides whether it is redrawn.
 #ifndef RENDERER_PASSES_PYRAMID_PYRAMID_H
 #define RENDERER_PASSES_PYRAMID_PYRAMID_H
 

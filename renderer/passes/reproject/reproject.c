@@ -6,20 +6,20 @@
 #include "splat.comp.h"
 
 static const struct gpu_binding splat_bindings[] = {
-    {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0}, // frame
-    {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0}, // motions
-    {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0}, // keys
-    {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 0},  // position, read
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // frame
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // motions
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // keys
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},  // position, read
 };
 
 static const struct gpu_binding resolve_bindings[] = {
-    {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0}, // frame
-    {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0}, // motions
-    {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0}, // keys
-    {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 0},  // position, read
-    {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 0},  // colour, read
-    {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 0},  // position, written
-    {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 0},  // colour, written
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // frame
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // motions
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // keys
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},  // position, read
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},  // colour, read
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},  // position, written
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},  // colour, written
 };
 
 bool reproject_init(struct reproject *r, const struct reproject_desc *desc)
@@ -35,19 +35,20 @@ bool reproject_init(struct reproject *r, const struct reproject_desc *desc)
                                             .bindings = resolve_bindings,
                                             .binding_count = countof(resolve_bindings)};
     if (!gpu_buffer_create(r->gpu, "splat keys", 2ull * r->width * r->height * sizeof(uint64_t),
-                           VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT, GPU_DEVICE, &r->keys) ||
+                           VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT, GPU_DEVICE,
+                           &r->keys) ||
         !gpu_kernel_create(r->gpu, &splat, &r->splat) || !gpu_kernel_create(r->gpu, &resolve, &r->resolve))
         return false;
     for (uint32_t from = 0; from < 2; from++) {
         const struct gpu_resource resources[] = {
-            {.buffer = desc->frame},         {.buffer = desc->motions},         {.buffer = &r->keys},
-            {.view = desc->position[from]},  {.view = desc->colour[from]},      {.view = desc->position[1 - from]},
+            {.buffer = desc->frame},          {.buffer = desc->motions},    {.buffer = &r->keys},
+            {.view = desc->position[from]},   {.view = desc->colour[from]}, {.view = desc->position[1 - from]},
             {.view = desc->colour[1 - from]},
         };
         r->splat_sets[from] =
             gpu_set_create(r->gpu, r->splat.set_layout, splat_bindings, resources, countof(splat_bindings));
-        r->resolve_sets[from] =
-            gpu_set_create(r->gpu, r->resolve.set_layout, resolve_bindings, resources, countof(resolve_bindings));
+        r->resolve_sets[from] = gpu_set_create(r->gpu, r->resolve.set_layout, resolve_bindings, resources,
+                                               countof(resolve_bindings));
         if (!r->splat_sets[from] || !r->resolve_sets[from])
             return false;
     }
@@ -71,7 +72,8 @@ void reproject_finish(struct reproject *r)
 void reproject_record(const struct reproject *r, VkCommandBuffer cmd, uint32_t from, float drop_deg)
 {
     const VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
-    const uint32_t x = (r->width + SHARED_TILE - 1) / SHARED_TILE, y = (r->height + SHARED_TILE - 1) / SHARED_TILE;
+    const uint32_t x = (r->width + SHARED_TILE - 1) / SHARED_TILE,
+                   y = (r->height + SHARED_TILE - 1) / SHARED_TILE;
     gpu_barrier(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
     vkCmdFillBuffer(cmd, r->keys.buffer, 0, VK_WHOLE_SIZE, 0);
     gpu_barrier(cmd, VK_PIPELINE_STAGE_2_CLEAR_BIT, compute);

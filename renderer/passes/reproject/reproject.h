@@ -1,10 +1,10 @@
 // Forward reprojection of the last frame's colours and exact world positions to the new eyes.
 //
-// Franke, Fink, Martschinke, Selgrad and Stamminger, "Time-Warped Foveated Rendering for Virtual Reality Headsets",
-// Computer Graphics Forum 40(1), 2021, section 4. There every pixel is a point sprite resolved by the depth test; here
-// it is a 64-bit atomic maximum over (reversed depth, source pixel) in a storage buffer, which gives the same
-// nearest-wins result, is deterministic, and needs no rasteriser (Schuetz, Kerbl and Wimmer 2021, "Rendering Point
-// Clouds with Compute Shaders and Vertex Order Optimization").
+// Franke, Fink, Martschinke, Selgrad and Stamminger, "Time-Warped Foveated Rendering for Virtual Reality
+// Headsets", Computer Graphics Forum 40(1), 2021, section 4. There every pixel is a point sprite resolved by
+// the depth test; here it is a 64-bit atomic maximum over (reversed depth, source pixel) in a storage buffer,
+// which gives the same nearest-wins result, is deterministic, and needs no rasteriser (Schuetz, Kerbl and
+// Wimmer 2021, "Rendering Point Clouds with Compute Shaders and Vertex Order Optimization").
 //
 // A position's w says what it is: 0 a hole, -1 the background (xyz a direction), 1 the static scene, and
 // 1 + moving id + age / 64 a moving object, age in frames since its pixel was redrawn.
@@ -31,8 +31,8 @@ struct reproject_desc {
 
 bool reproject_init(struct reproject *reproject, const struct reproject_desc *desc);
 void reproject_finish(struct reproject *reproject);
-// Reads history `from`, writes colour and position `1 - from`. Points that land less than drop_deg from the gaze are
-// dropped: that hole is redrawn anyway (section 4); 0 keeps all.
+// Reads history `from`, writes colour and position `1 - from`. Points that land less than drop_deg from the
+// gaze are dropped: that hole is redrawn anyway (section 4); 0 keeps all.
 void reproject_record(const struct reproject *reproject, VkCommandBuffer cmd, uint32_t from, float drop_deg);
 
 #endif

@@ -3,17 +3,22 @@
 #include "renderer/shared/shared.h"
 
 #include "screen.comp.h"
+#include "screen.comp_colour.h"
 
-static const struct gpu_binding bindings[] = {
-    {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 0},          // screen
-    {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 0}, // overlay
-    {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 0},          // colour, last: absent for gray
-};
+enum { COLOUR = 2, BINDINGS };
+
+// The colour is absent for gray.
+static void fill_bindings(struct gpu_binding out[BINDINGS], bool coloured)
+{
+    out[0] = (struct gpu_binding){.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE};          // screen
+    out[1] = (struct gpu_binding){.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}; // overlay
+    out[COLOUR] = (struct gpu_binding){.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, .absent = !coloured};
+}
 
 struct screen_push {
     uint32_t width, height;
     int32_t left[2], top[2];
-    uint32_t has_overlay, has_colour;
+    uint32_t has_overlay;
     float fade;
 };
 
@@ -36,15 +41,19 @@ bool screen_init(struct screen *s, struct gpu *gpu, uint32_t width, uint32_t hei
                                          .width = 2 * width,
                                          .height = height,
                                          .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT};
-    const struct gpu_kernel_desc kernel = {.name = "screen",
-                                           .code = {screen_comp, sizeof screen_comp},
-                                           .bindings = bindings,
-                                           .binding_count = countof(bindings),
-                                           .push_bytes = sizeof(struct screen_push)};
-    s->sampler = gpu_sampler_create(gpu, VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
-                                    VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE, 1);
-    return s->sampler && gpu_image_create(gpu, &image, &s->image) && gpu_kernel_create(gpu, &kernel, &s->kernel) &&
-           create_overlay(s, nothing, 1, 1);
+    struct gpu_binding bindings[BINDINGS];
+    fill_bindings(bindings, false);
+    struct gpu_kernel_desc kernel = {.name = "screen",
+                                     .code = {screen_comp, sizeof screen_comp},
+                                     .bindings = bindings,
+                                     .binding_count = BINDINGS,
+                                     .push_bytes = sizeof(struct screen_push)};
+    s->sampler = gpu_sampler_create_plain(gpu);
+    if (!s->sampler || !gpu_image_create(gpu, &image, &s->image) || !gpu_kernel_create(gpu, &kernel, &s->gray))
+        return false;
+    fill_bindings(bindings, true);
+    kernel.code = (struct gpu_code){screen_comp_colour, sizeof screen_comp_colour};
+    return gpu_kernel_create(gpu, &kernel, &s->coloured) && create_overlay(s, nothing, 1, 1);
 }
 
 void screen_finish(struct screen *s)
@@ -52,15 +61,16 @@ void screen_finish(struct screen *s)
     if (!s->gpu)
         return;
     gpu_set_free(s->gpu, s->set);
-    gpu_kernel_destroy(s->gpu, &s->kernel);
+    gpu_kernel_destroy(s->gpu, &s->gray);
+    gpu_kernel_destroy(s->gpu, &s->coloured);
     gpu_image_destroy(s->gpu, &s->image);
     gpu_image_destroy(s->gpu, &s->overlay);
     vkDestroySampler(s->gpu->device, s->sampler, NULL);
     *s = (struct screen){0};
 }
 
-bool screen_set_overlay(struct screen *s, const uint8_t *rgba, uint32_t width, uint32_t height, const int32_t left[2],
-                        const int32_t top[2])
+bool screen_set_overlay(struct screen *s, const uint8_t *rgba, uint32_t width, uint32_t height,
+                        const int32_t left[2], const int32_t top[2])
 {
     s->has_overlay = false;
     if (!rgba)
@@ -85,16 +95,18 @@ void screen_record(struct screen *s, VkCommandBuffer cmd, const struct gpu_image
         {.view = s->overlay.view, .sampler = s->sampler, .layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL},
         {.view = colour ? colour->view : VK_NULL_HANDLE},
     };
-    s->set = gpu_set_create(s->gpu, s->kernel.set_layout, bindings, resources, countof(bindings) - (colour ? 0 : 1));
+    struct gpu_binding bindings[BINDINGS];
+    fill_bindings(bindings, colour != NULL);
+    const struct gpu_kernel *kernel = colour ? &s->coloured : &s->gray;
+    s->set = gpu_set_create(s->gpu, kernel->set_layout, bindings, resources, countof(bindings));
     if (!s->used)
         gpu_image_layout(cmd, &s->image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
     s->used = true;
     gpu_barrier(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
     const struct screen_push push = {
-        s->width,         s->height,      {s->left[0], s->left[1]}, {s->top[0], s->top[1]},
-        s->has_overlay,   colour != NULL, fade,
+        s->width, s->height, {s->left[0], s->left[1]}, {s->top[0], s->top[1]}, s->has_overlay, fade,
     };
-    gpu_dispatch(cmd, &s->kernel, s->set, &push, sizeof push, (s->width + SHARED_TILE - 1) / SHARED_TILE,
+    gpu_dispatch(cmd, kernel, s->set, &push, sizeof push, (s->width + SHARED_TILE - 1) / SHARED_TILE,
                  (s->height + SHARED_TILE - 1) / SHARED_TILE, 2);
     gpu_barrier(cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
 }

@@ -8,11 +8,13 @@ layout(local_size_x = SHARED_TILE, local_size_y = SHARED_TILE) in;
 
 layout(binding = 0, rgba8) uniform writeonly image2D screen;
 layout(binding = 1) uniform sampler2D overlay;
+#ifdef COLOUR
 layout(binding = 2, rgba8) uniform readonly image2DArray colour;
+#endif
 layout(scalar, push_constant) uniform Push {
     uint width, height;
     ivec2 left, top;
-    uint has_overlay, has_colour;
+    uint has_overlay;
     float fade;
 } push;
 
@@ -23,11 +25,13 @@ void main()
     if (pixel.x >= int(push.width) || pixel.y >= int(push.height))
         return;
     vec3 encoded = vec3(0.5); // mid gray, sRGB
-    if (push.has_colour != 0u && push.fade < 1.0) {
+#ifdef COLOUR
+    if (push.fade < 1.0) {
         encoded = imageLoad(colour, ivec3(pixel, eye)).rgb;
         if (push.fade > 0.0)
             encoded = colour_encode(mix(colour_decode(encoded), colour_decode(vec3(0.5)), push.fade));
     }
+#endif
     if (push.has_overlay != 0u) {
         ivec2 at = pixel - ivec2(push.left[eye], push.top[eye]);
         if (all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, textureSize(overlay, 0)))) {

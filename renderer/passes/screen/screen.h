@@ -9,7 +9,7 @@ struct screen {
     uint32_t width, height; // per eye
     struct gpu_image image; // rgba8, sRGB-encoded, 2 * width, layout GENERAL after the first record
     struct gpu_image overlay;
-    struct gpu_kernel kernel;
+    struct gpu_kernel gray, coloured;
     VkDescriptorSet set;
     VkSampler sampler;
     int32_t left[2], top[2];

@@ -3,30 +3,45 @@
 #include "renderer/shared/shared.h"
 
 #include "shade.comp.h"
+#include "shade.comp_emissive.h"
+#include "shade.comp_emissive_redraw.h"
+#include "shade.comp_redraw.h"
 
-static const struct gpu_binding bindings[] = {
-    {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},         // frame
-    {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0},         // lights
-    {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 0}, // base
-    {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 0}, // normal
-    {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 0}, // surface
-    {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 0}, // emissive
-    {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 0}, // depth
-    {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 0},          // hdr
-    {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 0},          // redraw map, last: absent where there is none
+#include <string.h>
+
+enum { EMISSIVE = 7, REDRAW_MAP = 8, BINDINGS };
+
+static const struct gpu_binding all_bindings[BINDINGS] = {
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},         // frame
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},         // lights
+    {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, // base
+    {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, // normal
+    {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, // surface
+    {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, // depth
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},          // hdr
+    {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, // emissive, where something glows
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},          // redraw map, where there is one
 };
+
+static struct gpu_code code_for(const struct shade_desc *desc)
+{
+    if (desc->emissive)
+        return desc->redraw_map
+                   ? (struct gpu_code){shade_comp_emissive_redraw, sizeof shade_comp_emissive_redraw}
+                   : (struct gpu_code){shade_comp_emissive, sizeof shade_comp_emissive};
+    return desc->redraw_map ? (struct gpu_code){shade_comp_redraw, sizeof shade_comp_redraw}
+                            : (struct gpu_code){shade_comp, sizeof shade_comp};
+}
 
 bool shade_init(struct shade *s, const struct shade_desc *desc)
 {
     *s = (struct shade){.gpu = desc->gpu, .width = desc->width, .height = desc->height};
-    const int32_t constants[] = {desc->emissive != VK_NULL_HANDLE, desc->redraw_map != VK_NULL_HANDLE};
-    const uint32_t binding_count = countof(bindings) - (desc->redraw_map ? 0 : 1);
-    const struct gpu_kernel_desc kernel = {.name = "shade",
-                                           .code = {shade_comp, sizeof shade_comp},
-                                           .bindings = bindings,
-                                           .binding_count = countof(bindings),
-                                           .constants = constants,
-                                           .constant_count = countof(constants)};
+    struct gpu_binding bindings[BINDINGS];
+    memcpy(bindings, all_bindings, sizeof bindings);
+    bindings[EMISSIVE].absent = !desc->emissive;
+    bindings[REDRAW_MAP].absent = !desc->redraw_map;
+    const struct gpu_kernel_desc kernel = {
+        .name = "shade", .code = code_for(desc), .bindings = bindings, .binding_count = countof(bindings)};
     const struct gpu_image_desc hdr = {.name = "hdr",
                                        .format = VK_FORMAT_R16G16B16A16_SFLOAT,
                                        .width = desc->width,
@@ -34,9 +49,9 @@ bool shade_init(struct shade *s, const struct shade_desc *desc)
                                        .layers = 2,
                                        .array = true,
                                        .usage = VK_IMAGE_USAGE_STORAGE_BIT};
-    s->sampler = gpu_sampler_create(s->gpu, VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
-                                    VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE, 1);
-    if (!s->sampler || !gpu_image_create(s->gpu, &hdr, &s->hdr) || !gpu_kernel_create(s->gpu, &kernel, &s->kernel))
+    s->sampler = gpu_sampler_create_plain(s->gpu);
+    if (!s->sampler || !gpu_image_create(s->gpu, &hdr, &s->hdr) ||
+        !gpu_kernel_create(s->gpu, &kernel, &s->kernel))
         return false;
     const VkImageLayout colour = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
     const struct gpu_resource resources[] = {
@@ -45,12 +60,12 @@ bool shade_init(struct shade *s, const struct shade_desc *desc)
         {.view = desc->base, .sampler = s->sampler, .layout = colour},
         {.view = desc->normal, .sampler = s->sampler, .layout = colour},
         {.view = desc->surface, .sampler = s->sampler, .layout = colour},
-        {.view = desc->emissive ? desc->emissive : desc->base, .sampler = s->sampler, .layout = colour},
         {.view = desc->depth, .sampler = s->sampler, .layout = VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL},
         {.view = s->hdr.view},
+        {.view = desc->emissive, .sampler = s->sampler, .layout = colour},
         {.view = desc->redraw_map},
     };
-    s->set = gpu_set_create(s->gpu, s->kernel.set_layout, bindings, resources, binding_count);
+    s->set = gpu_set_create(s->gpu, s->kernel.set_layout, bindings, resources, countof(resources));
     return s->set;
 }
 

@@ -7,18 +7,20 @@
 #include "renderer/shared/colour.glsl"
 
 layout(local_size_x = SHARED_TILE, local_size_y = SHARED_TILE) in;
-layout(constant_id = 0) const bool has_emissive = false;
-layout(constant_id = 1) const bool has_redraw_map = false;
 
 layout(scalar, binding = 0) readonly buffer Frame { shared_frame frame; };
 layout(scalar, binding = 1) readonly buffer Lights { shared_light lights[]; };
 layout(binding = 2) uniform sampler2DArray base_image;
 layout(binding = 3) uniform usampler2DArray normal_image;
 layout(binding = 4) uniform sampler2DArray surface_image;
-layout(binding = 5) uniform sampler2DArray emissive_image;
-layout(binding = 6) uniform sampler2DArray depth_image;
-layout(binding = 7, rgba16f) uniform writeonly image2DArray hdr;
+layout(binding = 5) uniform sampler2DArray depth_image;
+layout(binding = 6, rgba16f) uniform writeonly image2DArray hdr;
+#ifdef EMISSIVE
+layout(binding = 7) uniform sampler2DArray emissive_image;
+#endif
+#ifdef REDRAW
 layout(binding = 8, r8ui) uniform readonly uimage2DArray redraw_map;
+#endif
 
 const float pi = 3.14159265;
 
@@ -106,8 +108,10 @@ void main()
     ivec3 pixel = ivec3(gl_GlobalInvocationID);
     if (pixel.x >= int(frame.width) || pixel.y >= int(frame.height))
         return;
-    if (has_redraw_map && imageLoad(redraw_map, pixel).x == 0u)
+#ifdef REDRAW
+    if (imageLoad(redraw_map, pixel).x == 0u)
         return;
+#endif
     uint eye = gl_GlobalInvocationID.z;
     vec3 ray = view_ray(frame.eyes[eye], vec2(frame.width, frame.height), vec2(pixel.xy) + 0.5);
     mat4 world_from_eye = frame.eyes[eye].world_from_eye;
@@ -132,7 +136,8 @@ void main()
         radiance += frame.sun_illuminance.rgb * reflect_light(s, frame.sun_direction.xyz);
     for (uint i = 0; i < frame.light_count; i++)
         radiance += point_light(s, position, lights[i]);
-    if (has_emissive)
-        radiance += texelFetch(emissive_image, pixel, 0).rgb;
+#ifdef EMISSIVE
+    radiance += texelFetch(emissive_image, pixel, 0).rgb;
+#endif
     imageStore(hdr, pixel, vec4(min(radiance, vec3(65504.0)), 1.0));
 }

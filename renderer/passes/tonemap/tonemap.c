@@ -3,31 +3,38 @@
 #include "renderer/shared/shared.h"
 
 #include "tonemap.comp.h"
+#include "tonemap.comp_redraw.h"
 
-static const struct gpu_binding bindings[] = {
-    {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 0}, // frame
-    {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 0},  // hdr
-    {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 0},  // target
-    {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 0},  // redraw map, last: absent where there is none
+#include <string.h>
+
+enum { REDRAW_MAP = 3, BINDINGS };
+
+static const struct gpu_binding all_bindings[BINDINGS] = {
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // frame
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},  // hdr
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},  // target
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},  // redraw map, where there is one
 };
 
 bool tonemap_init(struct tonemap *t, const struct tonemap_desc *desc)
 {
     *t = (struct tonemap){.gpu = desc->gpu, .width = desc->width, .height = desc->height};
-    const int32_t has_redraw_map = desc->redraw_map != VK_NULL_HANDLE;
-    const struct gpu_kernel_desc kernel = {.name = "tonemap",
-                                           .code = {tonemap_comp, sizeof tonemap_comp},
-                                           .bindings = bindings,
-                                           .binding_count = countof(bindings),
-                                           .constants = &has_redraw_map,
-                                           .constant_count = 1};
+    struct gpu_binding bindings[BINDINGS];
+    memcpy(bindings, all_bindings, sizeof bindings);
+    bindings[REDRAW_MAP].absent = !desc->redraw_map;
+    const struct gpu_code code = desc->redraw_map
+                                     ? (struct gpu_code){tonemap_comp_redraw, sizeof tonemap_comp_redraw}
+                                     : (struct gpu_code){tonemap_comp, sizeof tonemap_comp};
+    const struct gpu_kernel_desc kernel = {
+        .name = "tonemap", .code = code, .bindings = bindings, .binding_count = countof(bindings)};
     if (!gpu_kernel_create(t->gpu, &kernel, &t->kernel))
         return false;
     for (uint32_t i = 0; i < 2 && desc->targets[i]; i++) {
-        const struct gpu_resource resources[] = {
-            {.buffer = desc->frame}, {.view = desc->hdr}, {.view = desc->targets[i]}, {.view = desc->redraw_map}};
-        t->sets[i] = gpu_set_create(t->gpu, t->kernel.set_layout, bindings, resources,
-                                    countof(bindings) - (has_redraw_map ? 0 : 1));
+        const struct gpu_resource resources[] = {{.buffer = desc->frame},
+                                                 {.view = desc->hdr},
+                                                 {.view = desc->targets[i]},
+                                                 {.view = desc->redraw_map}};
+        t->sets[i] = gpu_set_create(t->gpu, t->kernel.set_layout, bindings, resources, countof(bindings));
         if (!t->sets[i])
             return false;
     }

@@ -5,20 +5,23 @@
 #include "renderer/shared/colour.glsl"
 
 layout(local_size_x = SHARED_TILE, local_size_y = SHARED_TILE) in;
-layout(constant_id = 0) const bool has_redraw_map = false;
 
 layout(scalar, binding = 0) readonly buffer Frame { shared_frame frame; };
 layout(binding = 1, rgba16f) uniform readonly image2DArray hdr;
 layout(binding = 2, rgba8) uniform writeonly image2DArray target;
+#ifdef REDRAW
 layout(binding = 3, r8ui) uniform readonly uimage2DArray redraw_map;
+#endif
 
 void main()
 {
     ivec3 pixel = ivec3(gl_GlobalInvocationID);
     if (pixel.x >= int(frame.width) || pixel.y >= int(frame.height))
         return;
-    if (has_redraw_map && imageLoad(redraw_map, pixel).x == 0u)
+#ifdef REDRAW
+    if (imageLoad(redraw_map, pixel).x == 0u)
         return;
+#endif
     vec3 scaled = imageLoad(hdr, pixel).rgb * frame.exposure;
     vec3 display = scaled / (1.0 + colour_luminance(scaled));
     imageStore(target, pixel, vec4(colour_encode(clamp(display, 0.0, 1.0)), 1.0));

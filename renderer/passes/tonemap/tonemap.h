@@ -1,5 +1,6 @@
-// Tone mapping with a fixed luminance and sRGB encoding: the global operator of Reinhard, Stark, Shirley and Ferwerda,
-// "Photographic Tone Reproduction for Digital Images", SIGGRAPH 2002, equations 2 and 3, on luminance.
+// Tone mapping with a fixed luminance and sRGB encoding: the global operator of Reinhard, Stark, Shirley and
+// Ferwerda, "Photographic Tone Reproduction for Digital Images", SIGGRAPH 2002, equations 2 and 3, on
+// luminance.
 #ifndef RENDERER_PASSES_TONEMAP_TONEMAP_H
 #define RENDERER_PASSES_TONEMAP_TONEMAP_H
 
