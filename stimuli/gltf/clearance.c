@@ -4,11 +4,13 @@
 #include <stdlib.h>
 
 enum {
-    FLOOR_BINS = 256,
+    FLOOR_BINS = 128,
     // Triangles looked at in one scene, evenly thinned beyond: keeps the largest city below half a second.
     BUDGET = 3000000,
     MAX_DEPTH = 9, // of halving a triangle until it is as small as a cell
 };
+
+#define FAR_M 1e6f
 
 // What is done with each triangle, in world space.
 typedef void (*visit_fn)(void *context, const struct dvec3 corners[3]);
@@ -76,24 +78,29 @@ double clearance_floor(const struct scene *scene, const struct dmat4 *world)
     uint64_t step = scene->triangle_count / BUDGET + 1;
     visit(scene, world, scene->bounds_min.y, scene->bounds_max.y, step, add_floor, &search);
     double most = 0.0;
-    for (int i = 0; i < FLOOR_BINS; i++)
+    for (int i = 0; i < FLOOR_BINS / 2; i++)
         most = fmax(most, search.area[i]);
-    for (int i = 0; i < FLOOR_BINS && most > 0.0; i++)
+    for (int i = FLOOR_BINS / 2 - 1; i >= 0 && most > 0.0; i--)
         if (search.area[i] > 0.4 * most)
             return search.low + search.height * (i + 1) / (FLOOR_BINS - 1);
-    return scene->bounds_min.y;
+    return search.low;
 }
 
-struct blocking {
+// What lies between two heights gives its cells this distance.
+struct marking {
     struct clearance *map;
     double low, high;
+    double size_m; // triangles are halved down to this
+    float distance_m;
+    bool upward; // only what faces up
 };
 
-static void block(struct clearance *map, double x, double z)
+static void mark(const struct marking *marking, double x, double z)
 {
+    struct clearance *map = marking->map;
     double column = (x - map->x) / map->cell_m, row = (z - map->z) / map->cell_m;
     if (column >= 0.0 && row >= 0.0 && column < map->columns && row < map->rows)
-        map->distance_m[(size_t)row * map->columns + (size_t)column] = 0.0f;
+        map->distance_m[(size_t)row * map->columns + (size_t)column] = marking->distance_m;
 }
 
 static struct dvec3 middle(struct dvec3 a, struct dvec3 b)
@@ -101,11 +108,11 @@ static struct dvec3 middle(struct dvec3 a, struct dvec3 b)
     return dvec3_scale(dvec3_add(a, b), 0.5);
 }
 
-// Halves the longest edge until the triangle is as small as a cell, dropping what lies above or below.
-static void block_triangle(const struct blocking *blocking, const struct dvec3 c[3], int depth)
+// Halves the longest edge until the triangle is small enough, dropping what lies above or below.
+static void mark_triangle(const struct marking *marking, const struct dvec3 c[3], int depth)
 {
     double low = fmin(c[0].y, fmin(c[1].y, c[2].y)), high = fmax(c[0].y, fmax(c[1].y, c[2].y));
-    if (low > blocking->high || high < blocking->low)
+    if (low > marking->high || high < marking->low)
         return;
     double edge[3];
     int longest = 0;
@@ -113,19 +120,22 @@ static void block_triangle(const struct blocking *blocking, const struct dvec3 c
         edge[i] = dvec3_length(dvec3_sub(c[(i + 1) % 3], c[i]));
         longest = edge[i] > edge[longest] ? i : longest;
     }
-    if (depth == 2 * MAX_DEPTH || edge[longest] <= blocking->map->cell_m) {
+    if (depth == 2 * MAX_DEPTH || edge[longest] <= marking->size_m) {
         struct dvec3 centre = dvec3_scale(dvec3_add(dvec3_add(c[0], c[1]), c[2]), 1.0 / 3.0);
-        block(blocking->map, centre.x, centre.z);
+        mark(marking, centre.x, centre.z);
         return;
     }
     struct dvec3 a = c[longest], b = c[(longest + 1) % 3], other = c[(longest + 2) % 3], half = middle(a, b);
-    block_triangle(blocking, (const struct dvec3[3]){a, half, other}, depth + 1);
-    block_triangle(blocking, (const struct dvec3[3]){half, b, other}, depth + 1);
+    mark_triangle(marking, (const struct dvec3[3]){a, half, other}, depth + 1);
+    mark_triangle(marking, (const struct dvec3[3]){half, b, other}, depth + 1);
 }
 
-static void add_obstacle(void *context, const struct dvec3 corners[3])
+static void add_mark(void *context, const struct dvec3 corners[3])
 {
-    block_triangle(context, corners, 0);
+    const struct marking *marking = context;
+    struct dvec3 normal = dvec3_cross(dvec3_sub(corners[1], corners[0]), dvec3_sub(corners[2], corners[0]));
+    if (!marking->upward || normal.y > 0.7 * dvec3_length(normal))
+        mark_triangle(marking, corners, 0);
 }
 
 static void relax(struct clearance *map, int64_t column, int64_t row, int dx, int dz)
@@ -152,8 +162,8 @@ static void spread(struct clearance *map)
                 relax(map, column, row, -back[k][0], -back[k][1]);
 }
 
-bool clearance_make(struct clearance *map, const struct scene *scene, const struct dmat4 *world, double low,
-                    double high)
+bool clearance_make(struct clearance *map, const struct scene *scene, const struct dmat4 *world, double floor_y,
+                    double eye_m)
 {
     struct dvec3 extent = dvec3_sub(scene->bounds_max, scene->bounds_min);
     map->x = scene->bounds_min.x;
@@ -164,10 +174,16 @@ bool clearance_make(struct clearance *map, const struct scene *scene, const stru
     map->distance_m = malloc((size_t)map->columns * map->rows * sizeof *map->distance_m);
     if (map->distance_m == NULL)
         return false;
+    uint64_t step = scene->triangle_count / BUDGET + 1;
+    // Where no floor lies is outside a building. A thinned scene would have a floor full of holes: it counts as
+    // open.
     for (size_t i = 0; i < (size_t)map->columns * map->rows; i++)
-        map->distance_m[i] = 1e6f;
-    struct blocking blocking = {map, low, high};
-    visit(scene, world, low, high, scene->triangle_count / BUDGET + 1, add_obstacle, &blocking);
+        map->distance_m[i] = step > 1 ? FAR_M : 0.0f;
+    struct marking ground = {map, floor_y - 0.5 * eye_m, floor_y + 0.4 * eye_m, map->cell_m / 2.0, FAR_M, true};
+    if (step == 1)
+        visit(scene, world, ground.low, ground.high, step, add_mark, &ground);
+    struct marking obstacles = {map, floor_y + 0.4 * eye_m, floor_y + 1.3 * eye_m, map->cell_m, 0.0f, false};
+    visit(scene, world, obstacles.low, obstacles.high, step, add_mark, &obstacles);
     spread(map);
     return true;
 }

@@ -13,12 +13,15 @@ struct clearance {
     float *distance_m; // owned
 };
 
-// The lowest height that has about as much upward-facing area as any; bounds_min.y where there is none.
+// The highest height in the scene's lower half with 40 % or more of the upward-facing area that any height
+// there has; bounds_min.y where none faces up. (Not the one with most: buildings stand on slabs wider than
+// their floors.)
 double clearance_floor(const struct scene *scene, const struct dmat4 *world);
 
-// Of static instances between two heights. False: out of memory.
-bool clearance_make(struct clearance *map, const struct scene *scene, const struct dmat4 *world, double low,
-                    double high);
+// What static instances put between 0.4 and 1.3 times the eye's height above the floor is an obstacle, and so
+// is a place without a floor. False: out of memory.
+bool clearance_make(struct clearance *map, const struct scene *scene, const struct dmat4 *world, double floor_y,
+                    double eye_m);
 void clearance_finish(struct clearance *map);
 
 // Metres to the nearest obstacle, 0 on one and outside the map.

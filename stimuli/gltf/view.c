@@ -26,14 +26,14 @@ static void through_cameras(struct gltf_build *build, const struct dmat4 *world,
     }
 }
 
-// At a distance where a small model fills about two thirds of the default field of view's height.
+// At a distance where a small model fills most of the default field of view's height.
 static void around(struct scene *scene, struct dvec3 centre, double radius)
 {
     scene->path.knot_count = ORBIT_KNOTS;
     for (int i = 0; i < ORBIT_KNOTS; i++) {
         double angle = 2.0 * PI * i / ORBIT_KNOTS;
-        struct dvec3 position = {centre.x + 1.7 * radius * sin(angle), centre.y + 0.45 * radius,
-                                 centre.z + 1.5 * radius * cos(angle)};
+        struct dvec3 position = {centre.x + 1.25 * radius * sin(angle), centre.y + 0.35 * radius,
+                                 centre.z + 1.1 * radius * cos(angle)};
         scene->path.knots[i] = (struct camera_path_knot){position, centre};
     }
 }

@@ -11,6 +11,8 @@
 #define PI 3.14159265358979323846
 #define EYE_HEIGHT_M 1.6
 #define WANTED_CLEARANCE_M 0.6
+#define OPEN 0.12          // of the shorter extent
+#define OPEN_MOST_M 2.0    // beyond that no wall presses
 #define WANTED_RADIUS 0.25 // of the extent
 
 enum { RING_KNOTS = 24, RADII = 14, CENTRES = 7, LEG_SAMPLES = 6, LEAD_KNOTS = 5 };
@@ -41,6 +43,7 @@ static double leg_cost(const struct clearance *map, const struct ring *ring, int
 {
     struct dvec3 a = ring_point(ring, knot, from), b = ring_point(ring, knot + 1, to);
     double off = fraction(to) - WANTED_RADIUS, change = fraction(to) - fraction(from);
+    double open_m = fmin(OPEN * fmin(ring->extent.x, ring->extent.z), OPEN_MOST_M);
     double cost = 8.0 * off * off + 30.0 * change * change;
     for (int i = 1; i <= LEG_SAMPLES; i++) {
         double t = (double)i / LEG_SAMPLES;
@@ -49,6 +52,9 @@ static double leg_cost(const struct clearance *map, const struct ring *ring, int
             cost += 100.0;
         else if (clear < WANTED_CLEARANCE_M)
             cost += 2.0 * (1.0 - clear / WANTED_CLEARANCE_M);
+        // The nave rather than the aisle.
+        if (clear < open_m)
+            cost += 0.4 * (1.0 - clear / open_m);
     }
     return cost;
 }
@@ -121,7 +127,7 @@ void gltf_walk(struct scene *scene, const struct dmat4 *world)
     // Half way up in a model of a city whose houses are knee-high.
     double eye = fmin(EYE_HEIGHT_M, 0.5 * fmax(scene->bounds_max.y - floor_y, 1e-3));
     struct clearance map;
-    if (!clearance_make(&map, scene, world, floor_y + 0.4 * eye, floor_y + 1.3 * eye))
+    if (!clearance_make(&map, scene, world, floor_y, eye))
         return;
     struct ring best = {.cost = INFINITY};
     for (int i = 0; i < CENTRES * CENTRES; i++) {
