@@ -138,7 +138,7 @@ static int by_levels(const void *x, const void *y)
 
 static void finish_cell(struct choice_cell *cell, double conf)
 {
-    cell->pooled = cell->n > cell->persons;
+    cell->pooled = (int64_t)cell->answers > cell->persons;
     cell->test_of = stat_binomial_test(cell->chosen, cell->n, 0.5, conf, STAT_TWO_SIDED);
     cell->toggles = stat_moments(cell->toggle, cell->answers);
     stat_sort(cell->reaction_s, cell->reactions);

@@ -111,6 +111,11 @@ static void left_out(const struct report *r)
                 "<p class=\"note\">%" PRId64
                 " %s not complete; the answers given are part of every number here.</p>\n",
                 incomplete, incomplete == 1 ? "session is" : "sessions are");
+    if (sample_repeaters(r->sample))
+        fprintf(r->out,
+                "<p class=\"note\">People with several sessions: %zu; ratings take each session as a person of "
+                "its own.</p>\n",
+                sample_repeaters(r->sample));
     int64_t all = sessions + c->excluded + c->not_done + c->other_kinds + c->no_test_slot + t->excluded +
                   t->not_done + t->no_condition + t->more + (int64_t)r->sample->left_out_simulated;
     fputs(all ? "<p>Left out of the numbers above:</p>\n<ul>\n" : "<p>Nothing was left out.</p>\n", r->out);
@@ -133,11 +138,12 @@ static void exclusions_table(const struct report *r)
     const struct sample *s = r->sample;
     if (s->exclusion_count == 0)
         return;
-    fputs("<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"Exclusions\"><table "
-          "class=\"wrap\">\n<caption>Exclusions; "
-          "rules of the set \u201cstricter\u201d are listed and not applied, \u201clate\u201d ones were made "
-          "after the data was seen"
-          "</caption>\n<thead><tr><th scope=\"col\" class=\"word\">participant</th><th scope=\"col\" "
+    fputs("<p>Rules of the set \u201cstricter\u201d are listed and not applied; \u201clate\u201d ones were "
+          "made after the data "
+          "was seen.</p>\n<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"Exclusions\"><table "
+          "class=\"wrap\">\n"
+          "<caption>Exclusions</caption>\n<thead><tr><th scope=\"col\" class=\"word\">participant</th><th "
+          "scope=\"col\" "
           "class=\"word\">what</th>"
           "<th scope=\"col\" class=\"word\">rule</th><th scope=\"col\" class=\"word\">set</th><th "
           "scope=\"col\" class=\"word\">"

@@ -57,6 +57,18 @@ size_t sample_find_condition(const struct sample *sample, size_t file, int64_t i
     return SAMPLE_NONE;
 }
 
+size_t sample_repeaters(const struct sample *sample)
+{
+    size_t repeaters = 0;
+    for (size_t person = 0; person < sample->person_count; person++) {
+        size_t sessions = 0;
+        for (size_t i = 0; i < sample->session_count; i++)
+            sessions += !sample->sessions[i].excluded && sample->sessions[i].person == person;
+        repeaters += sessions > 1;
+    }
+    return repeaters;
+}
+
 bool sample_trial_excluded(const struct sample *sample, size_t file, int64_t trial_id)
 {
     for (size_t i = 0; i < sample->exclusion_count; i++) {

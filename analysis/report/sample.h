@@ -107,6 +107,8 @@ void sample_free(struct sample *sample);
 size_t sample_find_session(const struct sample *sample, size_t file, int64_t id);
 // Index of a condition; SAMPLE_NONE for id 0.
 size_t sample_find_condition(const struct sample *sample, size_t file, int64_t id);
+// People with more than one session that is analysed.
+size_t sample_repeaters(const struct sample *sample);
 bool sample_trial_excluded(const struct sample *sample, size_t file, int64_t trial_id);
 
 // A copy owned by the sample; NULL where memory ran out.

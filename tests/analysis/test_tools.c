@@ -344,6 +344,21 @@ static void frames_agree_with_r(void **state)
     program_free(&r);
 }
 
+// One person in two sessions: two answers in one cell are pooled, and ratings say how they count.
+static void repeated_people_are_said(void **state)
+{
+    (void)state;
+    study_file_make("p.db", &(struct study_desc){0});
+    study_file_sql("p.db", "UPDATE session SET participant_id = 1 WHERE id = 2");
+    struct program_result r = FOVSTATS("choices", "p.db");
+    assert_non_null(strstr(r.out, "epsilon 0.2 *"));
+    assert_non_null(strstr(r.out, "People with several sessions: 1;"));
+    program_free(&r);
+    r = FOVSTATS("ratings", "p.db");
+    assert_non_null(strstr(r.out, "People with several sessions: 1;"));
+    program_free(&r);
+}
+
 // Two labs' files: people add up, cells join.
 static void files_add_up(void **state)
 {
@@ -373,6 +388,7 @@ int main(void)
         cmocka_unit_test(simulated_is_said),
         cmocka_unit_test(ratings_agree_with_r),
         cmocka_unit_test(frames_agree_with_r),
+        cmocka_unit_test(repeated_people_are_said),
         cmocka_unit_test(files_add_up),
     };
     return cmocka_run_group_tests(tests, enter_folder, leave_folder);
