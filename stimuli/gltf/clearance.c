@@ -7,6 +7,7 @@ enum {
     FLOOR_BINS = 128,
     // Triangles looked at in one scene, evenly thinned beyond: keeps the largest city below half a second.
     BUDGET = 3000000,
+    HALVINGS = 20000000,
     MAX_DEPTH = 9, // of halving a triangle until it is as small as a cell
 };
 
@@ -92,7 +93,8 @@ struct marking {
     double low, high;
     double size_m; // triangles are halved down to this
     float distance_m;
-    bool upward; // only what faces up
+    bool upward;   // only what faces up
+    uint64_t left; // halvings: a file may stack any number of huge triangles
 };
 
 static void mark(const struct marking *marking, double x, double z)
@@ -109,7 +111,7 @@ static struct dvec3 middle(struct dvec3 a, struct dvec3 b)
 }
 
 // Halves the longest edge until the triangle is small enough, dropping what lies above or below.
-static void mark_triangle(const struct marking *marking, const struct dvec3 c[3], int depth)
+static void mark_triangle(struct marking *marking, const struct dvec3 c[3], int depth)
 {
     double low = fmin(c[0].y, fmin(c[1].y, c[2].y)), high = fmax(c[0].y, fmax(c[1].y, c[2].y));
     if (low > marking->high || high < marking->low)
@@ -120,11 +122,12 @@ static void mark_triangle(const struct marking *marking, const struct dvec3 c[3]
         edge[i] = dvec3_length(dvec3_sub(c[(i + 1) % 3], c[i]));
         longest = edge[i] > edge[longest] ? i : longest;
     }
-    if (depth == 2 * MAX_DEPTH || edge[longest] <= marking->size_m) {
+    if (depth == 2 * MAX_DEPTH || marking->left == 0 || edge[longest] <= marking->size_m) {
         struct dvec3 centre = dvec3_scale(dvec3_add(dvec3_add(c[0], c[1]), c[2]), 1.0 / 3.0);
         mark(marking, centre.x, centre.z);
         return;
     }
+    marking->left--;
     struct dvec3 a = c[longest], b = c[(longest + 1) % 3], other = c[(longest + 2) % 3], half = middle(a, b);
     mark_triangle(marking, (const struct dvec3[3]){a, half, other}, depth + 1);
     mark_triangle(marking, (const struct dvec3[3]){half, b, other}, depth + 1);
@@ -132,7 +135,7 @@ static void mark_triangle(const struct marking *marking, const struct dvec3 c[3]
 
 static void add_mark(void *context, const struct dvec3 corners[3])
 {
-    const struct marking *marking = context;
+    struct marking *marking = context;
     struct dvec3 normal = dvec3_cross(dvec3_sub(corners[1], corners[0]), dvec3_sub(corners[2], corners[0]));
     if (!marking->upward || normal.y > 0.7 * dvec3_length(normal))
         mark_triangle(marking, corners, 0);
@@ -179,10 +182,12 @@ bool clearance_make(struct clearance *map, const struct scene *scene, const stru
     // open.
     for (size_t i = 0; i < (size_t)map->columns * map->rows; i++)
         map->distance_m[i] = step > 1 ? FAR_M : 0.0f;
-    struct marking ground = {map, floor_y - 0.5 * eye_m, floor_y + 0.4 * eye_m, map->cell_m / 2.0, FAR_M, true};
+    struct marking ground = {
+        map, floor_y - 0.5 * eye_m, floor_y + 0.4 * eye_m, map->cell_m / 2.0, FAR_M, true, HALVINGS};
     if (step == 1)
         visit(scene, world, ground.low, ground.high, step, add_mark, &ground);
-    struct marking obstacles = {map, floor_y + 0.4 * eye_m, floor_y + 1.3 * eye_m, map->cell_m, 0.0f, false};
+    struct marking obstacles = {map,     floor_y + 0.4 * eye_m, floor_y + 1.3 * eye_m, map->cell_m, 0.0f, false,
+                                HALVINGS};
     visit(scene, world, obstacles.low, obstacles.high, step, add_mark, &obstacles);
     spread(map);
     return true;
