@@ -52,6 +52,9 @@ struct machine {
 
 struct machine_record *machine_push(struct machine *machine, enum machine_record_kind kind, int64_t at_ns);
 
+uint32_t machine_next_trial(const struct machine *machine); // the first without an answer; trial_count: none
+bool machine_may_go_on(const struct machine *machine);      // REST has lasted long enough
+
 void stimulus_begin(struct machine *machine);
 void stimulus_frame(struct machine *machine, int64_t now_ns);
 void stimulus_toggle(struct machine *machine, int64_t now_ns);
