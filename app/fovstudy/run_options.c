@@ -51,7 +51,8 @@ static const char about[] =
     "A simulated observer (--observer sim:name=value,...) has threshold, slope, lapse, side_bias,\n"
     "toggles_mean, dwell_s, dwell_spread, rating_mean, rating_sd, rating_drop, view_s, answer_s, and\n"
     "errors=FILE. With --display none it answers from the errors that an earlier session measured and\n"
-    "left in the study file, else from that file: lines of SCENE,ERROR,MODE[:p=v,...].";
+    "left in the study file, else from that file: lines of SCENE,ERROR,MODE[:p=v,...], ERROR the\n"
+    "eccentricity-weighted RMSE against the reference, 0 to 1.";
 
 static int wrong_value(enum option option, const char *value, const char *want)
 {

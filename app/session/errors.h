@@ -3,7 +3,8 @@
 //
 // The file is text, one line per option and scene: SCENE,ERROR,MODE[:p=v,...] (the option is the rest of the
 // line; empty lines and lines that begin with # are skipped). ERROR is what measured_error holds:
-// eccentricity-weighted RMSE against the protocol's reference in levels of 0..255. The reference itself has 0.
+// eccentricity-weighted RMSE against the protocol's reference, 0 to 1 (black against white). The reference
+// itself has 0.
 #ifndef APP_SESSION_ERRORS_H
 #define APP_SESSION_ERRORS_H
 

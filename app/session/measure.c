@@ -95,5 +95,6 @@ bool measure_take(struct measure *measure, const struct machine_view *view, uint
 
 double measure_error(const struct measure *measure, uint32_t condition, uint32_t scene)
 {
-    return image_error_result(&measure->sums[(size_t)condition * measure->scene_count + scene]).weighted_rmse;
+    return image_error_result(&measure->sums[(size_t)condition * measure->scene_count + scene]).weighted_rmse /
+           255.0;
 }

@@ -13,7 +13,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#define MEASURE_METRIC "wrmse" // the store's measured_error.metric: levels of 0..255
+#define MEASURE_METRIC "wrmse" // the store's measured_error.metric; 0 to 1 (black against white)
 
 struct measure;
 // scene_count scenes are told apart by the index the caller gives. NULL: out of memory.

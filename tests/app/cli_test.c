@@ -182,14 +182,11 @@ static void a_session_runs_without_frames(void **state)
 {
     (void)state;
     const struct command_result *result;
-    command(
-        "printf 'atrium,3,time_warped:epsilon=0.2\\natrium,1,time_warped:epsilon=0.05\\n' > '%s/errors.csv'",
-        folder);
     const char *run =
         RUN_SHORT "--db '%s/errors.db' --display none --observer sim:errors=%s/errors.csv --events -";
-    result = command(run, folder, folder);
-    expect(result, 1, "time_warped"); // the rating's option is missing
-    command("printf '# default parameters\\natrium,2,time_warped\\n' >> '%s/errors.csv'", folder);
+    command("printf 'atrium,0.03,time_warped:epsilon=0.2\\n' > '%s/errors.csv'", folder);
+    expect(command(run, folder, folder), 1, "0.05"); // the other option is missing
+    command("printf '# better\\natrium,0.02,time_warped:epsilon=0.05\\n' >> '%s/errors.csv'", folder);
     result = command(run, folder, folder);
     assert_string_equal(result->err, "");
     assert_int_equal(result->status, 0);
