@@ -170,15 +170,20 @@ static void add_column(const struct atrium *atrium, struct solid_place foot, con
     add_capital(atrium, atrium_at(foot, 0, top, 0), r);
 }
 
-static void add_pier(const struct atrium *atrium, struct solid_place foot, const struct storey *s)
+// One arm of a corner pier, from `low` to `high` in plan, both given for the corner at x > 0, z > 0.
+static void add_pier_arm(const struct atrium *atrium, float x_sign, float z_sign, const float low[2],
+                         const float high[2], const struct storey *s, float grow)
 {
-    struct solid_brush stone = atrium_brush(atrium, ATRIUM_STONE, foot);
-    const unsigned open = SOLID_ALL & ~(unsigned)SOLID_BOTTOM;
-    float height = s->spring - s->floor;
-    solid_box(&stone, (float[]){-0.35f, 0, -0.35f}, (float[]){0.35f, 0.3f, 0.35f}, open, CELL_M);
-    solid_box(&stone, (float[]){-0.30f, 0.3f, -0.30f}, (float[]){0.30f, height - 0.16f, 0.30f}, open, CELL_M);
-    solid_box(&stone, (float[]){-0.36f, height - 0.16f, -0.36f}, (float[]){0.36f, height, 0.36f}, SOLID_ALL,
-              CELL_M);
+    struct solid_brush stone = atrium_brush(atrium, ATRIUM_STONE, solid_place(0, 0, 0, 0));
+    const float levels[4] = {s->floor, s->floor + 0.3f, s->spring - 0.16f - grow, s->spring};
+    const float wider[3] = {0.05f, 0, 0.06f};
+    for (int i = 0; i < 3; i++) {
+        float w = wider[i] + grow, x[2] = {x_sign * (low[0] - w), x_sign * (high[0] + w)};
+        float z[2] = {z_sign * (low[1] - w), z_sign * (high[1] + w)};
+        solid_box(&stone, (float[]){fminf(x[0], x[1]), levels[i], fminf(z[0], z[1])},
+                  (float[]){fmaxf(x[0], x[1]), levels[i + 1], fmaxf(z[0], z[1])},
+                  i == 2 ? SOLID_ALL : SOLID_ALL & ~(unsigned)SOLID_BOTTOM, CELL_M);
+    }
 }
 
 static bool first_of_side(uint32_t number)
@@ -214,10 +219,11 @@ static void add_corner(const struct atrium *atrium, float x_sign, float z_sign)
     float z = z_sign * (ATRIUM_HALF_Z + ATRIUM_WALL + ATRIUM_DEPTH / 2);
     for (int i = 0; i < 2; i++) {
         add_vault(atrium, solid_place(x, storeys[i].spring, z, 0));
-        add_pier(atrium,
-                 solid_place(x_sign * (ATRIUM_HALF_X + ATRIUM_WALL / 2), storeys[i].floor,
-                             z_sign * (ATRIUM_HALF_Z + ATRIUM_WALL / 2), 0),
-                 &storeys[i]);
+        // An L around the court's corner carries the first arch of either side.
+        add_pier_arm(atrium, x_sign, z_sign, (const float[]){11.69f, 4.5f}, (const float[]){12.5f, 5.04f},
+                     &storeys[i], 0);
+        add_pier_arm(atrium, x_sign, z_sign, (const float[]){12.0f, 4.19f}, (const float[]){12.54f, 5.0f},
+                     &storeys[i], 0.01f);
     }
 }
 

@@ -18,7 +18,7 @@ static void banner_surface(const void *shape, float u, float v, float p[3], floa
     float down = (1 - v) * b->length, free = fminf(down / b->length * 1.6f, 1);
     float a = u * b->folds * 2 * PI + b->phase, sway = 0.35f * sinf(down * 1.9f + b->phase);
     float gather = 1 - 0.10f * free;
-    p[0] = (u - 0.5f) * b->width * gather + 0.02f * free * sinf(a * 2);
+    p[0] = (u - 0.5f) * b->width * gather + 0.01f * free * sinf(a * 2);
     p[1] = -down + 0.015f * free * cosf(a + 1);
     p[2] = b->depth * free * (0.8f * sinf(a + sway) + 0.25f * sinf(1.7f * a + 2 * sway)) + 0.06f * free * sway;
     // A hem that swings in a little.
@@ -36,7 +36,7 @@ static void add_banner(const struct atrium *atrium, struct solid_place bay, uint
         atrium_brush(atrium, colours[number / 2 % 3], atrium_at(bay, 0, ATRIUM_GALLERY + 0.99f, 0.24f));
     struct banner b = {.width = 1.25f, .length = 2.9f, .folds = 4.5f, .depth = 0.06f};
     b.phase = random_range(61, number, 0, 6);
-    solid_patch(&cloth, &b, banner_surface, 40, 22);
+    solid_patch(&cloth, &b, banner_surface, 38, 20);
 }
 
 struct curtain {
@@ -52,7 +52,7 @@ static void curtain_surface(const void *shape, float u, float v, float p[3], flo
     float spread =
         v > 0.36f ? 0.22f + 0.86f * powf((v - 0.36f) / 0.64f, 1.4f) : 0.22f + 0.25f * (0.36f - v) / 0.36f;
     float folds = u * 5 * 2 * PI + c->phase, depth = (0.045f + 0.02f * v) * (1 - 0.6f * tie);
-    float sag = -0.06f * fabsf(sinf(u * 5 * PI)) * powf(fmaxf(v, 0), 12);
+    float sag = -0.06f * powf(sinf(u * 5 * PI), 2) * powf(fmaxf(v, 0), 12);
     p[0] = c->side * (1.12f - u * spread);
     p[1] = length * v + sag;
     p[2] = depth * sinf(folds + 0.6f * sinf(v * 6)) + 0.008f * sinf(1.6f * folds);

@@ -181,7 +181,7 @@ static void leaf(const struct texture_noise *n, float u, float v, struct texel *
     if (along < 0.10f && side < 0.02f)
         out->alpha = 1;
     out->height = 0.002f * rib;
-    out->roughness = 0.78f;
+    out->roughness = 0.95f;
 }
 
 static void soil(const struct texture_noise *n, float u, float v, struct texel *out)

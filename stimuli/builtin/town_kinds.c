@@ -76,7 +76,7 @@ static void cobble(const struct texture_noise *n, float u, float v, struct texel
     float top = texture_smooth(0.6f, 3.0f, edge);
     paint(out, 0.60f + 0.06f * tone, 0.57f + 0.02f * tone, 0.53f,
           (0.62f + 0.38f * top) * (0.72f + 0.3f * tone + 0.16f * s));
-    out->height = 0.035f * top + 0.006f * s;
+    out->height = 0.018f * top + 0.004f * s;
     out->roughness = 0.75f + 0.2f * (1 - top);
 }
 
@@ -96,7 +96,7 @@ static void paving(const struct texture_noise *n, float u, float v, struct texel
     float tone, edge = courses(u, v, 4, 4, 131, &tone), s = speckle(u, v, 132), joint = edge < 1 ? 0.0f : 1.0f;
     paint(out, 0.74f, 0.69f, 0.60f + 0.04f * tone,
           (0.6f + 0.4f * joint) * (0.78f + 0.22f * tone + 0.16f * (s - 0.5f)));
-    out->height = 0.02f * joint + 0.004f * s;
+    out->height = 0.012f * joint + 0.003f * s;
     out->roughness = 0.7f + 0.15f * s;
 }
 

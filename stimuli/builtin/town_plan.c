@@ -108,10 +108,10 @@ static void plan_square(const struct town *town, struct town_block *b)
     }
     add(town, b, TOWN_STALL, -8.5f, -2.6f, 1);
     add(town, b, TOWN_STALL, -8.5f, 1.8f, 1);
-    add(town, b, TOWN_STALL, 8.6f, -1.4f, 3);
+    add(town, b, TOWN_STALL, 8.9f, 5.2f, 3);
     add(town, b, TOWN_STALL, 1.5f, -9.0f, 0);
     add(town, b, TOWN_STALL, -3.0f, -9.2f, 0);
-    add(town, b, TOWN_HAY, 8.5f, 3.5f, 1);
+    add(town, b, TOWN_HAY, -2.6f, 9.2f, 1);
     add(town, b, TOWN_LAMP, -10.4f, -0.4f, 0);
     add(town, b, TOWN_LAMP, 10.4f, 1.2f, 0);
     add(town, b, TOWN_LAMP, -0.7f, -10.4f, 0);
@@ -150,9 +150,9 @@ static void plan_houses(const struct town *town, struct town_block *b)
     }
     static const float trees[5][2] = {{0, 0}, {0.5f, -10.0f}, {-0.5f, 10.0f}, {10.2f, 0.2f}, {-10.2f, 0}};
     for (uint32_t k = 0; k < 5; k++)
-        if (pick(town, b, 30 + k, 3) > 0 && !(far_bank && trees[k][1] < -1))
+        if (pick(town, b, 30 + k, 3) > 0 && (!far_bank || trees[k][1] > 1))
             add(town, b, tree(town, b, k), trees[k][0], trees[k][1], k);
-    add(town, b, TOWN_LAMP, 11.5f, far_bank ? 0.5f : -11.5f, 0);
+    add(town, b, TOWN_LAMP, 11.5f, far_bank ? 1.25f : -11.5f, 0);
     add(town, b, TOWN_LAMP, -11.5f, 11.5f, 0);
 }
 

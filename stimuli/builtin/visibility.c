@@ -7,7 +7,7 @@
 #define PI 3.14159265358979f
 
 enum {
-    SKY_MAP = 352,  // texels a side, about 0.1 m in a court of 33 m
+    SKY_MAP = 272,  // texels a side, about 0.13 m in a court of 33 m
     SUN_MAP = 2048, // about 0.016 m
     SUN_TAPS = 12,
 };
