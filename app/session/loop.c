@@ -252,6 +252,8 @@ enum session_result session_run(const struct session_desc *desc, char *error, si
             continue;
         if (!failed)
             linger(&loop, &view);
+        if (!failed && view.complete && desc->display)
+            failed = !show_measure_rest(&loop.show, error, error_size);
     }
     show_finish(&loop.show);
     machine_destroy(loop.machine);

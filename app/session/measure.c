@@ -80,11 +80,11 @@ static bool add_eye(struct measure *measure, struct image_error_sum *sum, int ey
     return image_error_add(sum, &test, &truth, &view);
 }
 
-bool measure_take(struct measure *measure, const struct machine_view *view, uint32_t scene,
-                  struct renderer_option *option, struct renderer_option *reference, const struct frame *frame)
+bool measure_take(struct measure *measure, uint32_t condition, uint32_t scene, struct renderer_option *option,
+                  struct renderer_option *reference, const struct frame *frame)
 {
     struct frame_stats stats;
-    struct image_error_sum *sum = &measure->sums[(size_t)view->condition * measure->scene_count + scene];
+    struct image_error_sum *sum = &measure->sums[(size_t)condition * measure->scene_count + scene];
     if (!renderer_draw(reference, frame, &stats))
         return false;
     for (int eye = 0; eye < EYES; eye++)

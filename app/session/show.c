@@ -1,5 +1,7 @@
 #include "app/session/show.h"
 
+#include "app/session/probe.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -53,22 +55,47 @@ struct observer_errors show_errors(const struct show *show, uint32_t trial)
     return errors;
 }
 
+static bool store_error_of(const struct show *show, uint32_t condition, const char *scene, double value,
+                           char *error, size_t error_size)
+{
+    struct store_error why;
+    struct store_error_key key = {.condition_id = show->desc->ids->condition_ids[condition],
+                                  .reference_id = show->desc->reference_id,
+                                  .scene = scene,
+                                  .metric = MEASURE_METRIC};
+    if (store_set_measured_error(show->desc->store, &key, value, &why) == STORE_OK)
+        return true;
+    snprintf(error, error_size, "%s", why.text);
+    return false;
+}
+
 bool show_store_errors(const struct show *show, uint32_t trial, char *error, size_t error_size)
 {
-    const struct session_desc *desc = show->desc;
-    const struct plan_trial *planned = &desc->plan->trials[trial];
+    const struct plan_trial *planned = &show->desc->plan->trials[trial];
     for (int slot = 0; show->measure && slot < 2; slot++) {
-        struct store_error why;
         double value = option_error(show, trial, slot);
-        if (planned->option[slot] < 0 || isnan(value))
-            continue;
-        struct store_error_key key = {.condition_id = desc->ids->condition_ids[planned->option[slot]],
-                                      .reference_id = desc->reference_id,
-                                      .scene = planned->scene,
-                                      .metric = MEASURE_METRIC};
-        if (store_set_measured_error(desc->store, &key, value, &why) != STORE_OK) {
-            snprintf(error, error_size, "%s", why.text);
+        if (planned->option[slot] >= 0 && !isnan(value) &&
+            !store_error_of(show, (uint32_t)planned->option[slot], planned->scene, value, error, error_size))
             return false;
+    }
+    return true;
+}
+
+bool show_measure_rest(struct show *show, char *error, size_t error_size)
+{
+    const struct session_desc *desc = show->desc;
+    for (uint32_t scene = 0; show->measure && scene < desc->scene_count; scene++) {
+        for (uint32_t condition = 0; condition < desc->plan->condition_count; condition++) {
+            double value = 0.0;
+            if (!isnan(measure_error(show->measure, condition, scene)))
+                continue;
+            if (desc->ids->condition_ids[condition] != desc->reference_id) {
+                if (!probe(desc, show->measure, condition, scene, error, error_size))
+                    return false;
+                value = measure_error(show->measure, condition, scene);
+            }
+            if (!store_error_of(show, condition, desc->scenes[scene].name, value, error, error_size))
+                return false;
         }
     }
     return true;
@@ -113,7 +140,7 @@ static bool draw_option(struct show *show, const struct machine_view *view, cons
     }
     bool is_reference = show->desc->ids->condition_ids[view->condition] == show->desc->reference_id;
     if (show->measure && !is_reference && measure_due(show->measure, view) &&
-        !measure_take(show->measure, view, scene_index(show, view->trial_index), option,
+        !measure_take(show->measure, (uint32_t)view->condition, scene_index(show, view->trial_index), option,
                       stage_reference(show->desc->stage), &frame)) {
         snprintf(error, error_size, "the image error of frame %llu could not be measured",
                  (unsigned long long)show->number);

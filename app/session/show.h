@@ -28,5 +28,8 @@ bool show_frame(struct show *show, const struct machine_view *view, const struct
 struct observer_errors show_errors(const struct show *show, uint32_t trial);
 // Writes the errors of a trial's options into the store.
 bool show_store_errors(const struct show *show, uint32_t trial, char *error, size_t error_size);
+// Measures and stores what this participant did not see: each condition of the plan on each other scene, since
+// those who answer without frames may get it there.
+bool show_measure_rest(struct show *show, char *error, size_t error_size);
 
 #endif

@@ -97,30 +97,39 @@ static struct stage_scene *find_scene(struct stage *stage, const char *name)
     return NULL;
 }
 
-static bool make_options(struct stage *stage, const struct plan_trial *trial, char *error, size_t error_size)
+static bool make_option(struct stage *stage, int slot, uint32_t condition, char *error, size_t error_size)
 {
-    struct renderer_scene *resident = stage->scene->resident;
-    for (int slot = 0; slot < 2; slot++) {
-        struct mode_choice choice;
-        if (trial->option[slot] < 0)
-            continue;
-        const struct plan_condition *condition = &stage->desc.plan->conditions[trial->option[slot]];
-        if (stage_choice(condition, &choice))
-            stage->options[slot] = renderer_option_create(stage->desc.renderer, resident, &choice);
-        if (!stage->options[slot]) {
-            snprintf(error, error_size, "the mode '%s' cannot be set up on this device for the scene '%s'",
-                     condition->mode, trial->scene);
-            return false;
-        }
-    }
-    if (stage->desc.reference)
-        stage->reference = renderer_option_create(stage->desc.renderer, resident, stage->desc.reference);
-    if (stage->desc.reference && !stage->reference) {
+    struct mode_choice choice;
+    if (stage_choice(&stage->desc.plan->conditions[condition], &choice))
+        stage->options[slot] = renderer_option_create(stage->desc.renderer, stage->scene->resident, &choice);
+    if (stage->options[slot])
+        return true;
+    snprintf(error, error_size, "the mode '%s' cannot be set up on this device for the scene '%s'",
+             stage->desc.plan->conditions[condition].mode, stage->scene->name);
+    return false;
+}
+
+static bool make_reference(struct stage *stage, char *error, size_t error_size)
+{
+    if (!stage->desc.reference)
+        return true;
+    stage->reference =
+        renderer_option_create(stage->desc.renderer, stage->scene->resident, stage->desc.reference);
+    if (!stage->reference)
         snprintf(error, error_size, "the reference cannot be set up on this device for the scene '%s'",
-                 trial->scene);
-        return false;
-    }
-    return true;
+                 stage->scene->name);
+    return stage->reference != NULL;
+}
+
+static bool enter_scene(struct stage *stage, struct stage_scene *scene, const char *name, char *error,
+                        size_t error_size)
+{
+    clear_options(stage);
+    stage->scene = scene;
+    if (scene && bring(stage, scene))
+        return true;
+    snprintf(error, error_size, "the scene '%s' cannot be put on the GPU", name);
+    return false;
 }
 
 bool stage_prepare(struct stage *stage, uint32_t trial, char *error, size_t error_size)
@@ -128,18 +137,28 @@ bool stage_prepare(struct stage *stage, uint32_t trial, char *error, size_t erro
     const struct plan_trial *planned = &stage->desc.plan->trials[trial];
     if (stage->trial == (int64_t)trial)
         return true;
-    clear_options(stage);
-    stage->scene = find_scene(stage, planned->scene);
-    if (!stage->scene || !bring(stage, stage->scene)) {
-        snprintf(error, error_size, "the scene '%s' cannot be put on the GPU", planned->scene);
-        return false;
-    }
-    if (!make_options(stage, planned, error, error_size)) {
+    bool done = enter_scene(stage, find_scene(stage, planned->scene), planned->scene, error, error_size);
+    for (int slot = 0; done && slot < 2; slot++)
+        if (planned->option[slot] >= 0)
+            done = make_option(stage, slot, (uint32_t)planned->option[slot], error, error_size);
+    done = done && make_reference(stage, error, error_size);
+    if (done)
+        stage->trial = (int64_t)trial;
+    else
         clear_options(stage);
-        return false;
-    }
-    stage->trial = (int64_t)trial;
-    return true;
+    return done;
+}
+
+bool stage_prepare_condition(struct stage *stage, uint32_t condition, size_t scene, char *error,
+                             size_t error_size)
+{
+    struct stage_scene *wanted = &stage->desc.scenes[scene];
+    bool done = enter_scene(stage, wanted, wanted->name, error, error_size) &&
+                make_option(stage, PLAN_SLOT_A, condition, error, error_size) &&
+                make_reference(stage, error, error_size);
+    if (!done)
+        clear_options(stage);
+    return done;
 }
 
 struct renderer_option *stage_option(struct stage *stage, enum plan_slot slot)

@@ -39,6 +39,9 @@ void stage_destroy(struct stage *stage);                   // NULL is fine
 
 // The options of a trial; nothing where they are ready already. False with a sentence.
 bool stage_prepare(struct stage *stage, uint32_t trial, char *error, size_t error_size);
+// One condition of the plan on one scene, in slot a, with the reference: for measuring outside trials.
+bool stage_prepare_condition(struct stage *stage, uint32_t condition, size_t scene, char *error,
+                             size_t error_size);
 struct renderer_option *stage_option(struct stage *stage, enum plan_slot slot); // NULL: none
 struct renderer_option *stage_reference(struct stage *stage);                   // NULL: none
 

@@ -1,0 +1,123 @@
+#!/bin/sh
+# The windowed program driven by synthetic keys: studies/protocols/short.yaml from consent to stored answers.
+# usage: window_test.sh FOVSTUDY SOURCE_DIR FOLDER [SHOTS]; SHOTS: a folder for a picture of each screen.
+# Exit 77 where Xvfb, xdotool or a Vulkan device is missing.
+set -u
+fovstudy=$1 source=$2 folder=$3 shots=${4:-}
+for tool in Xvfb xdotool sqlite3; do
+    command -v $tool >/dev/null || { echo "no $tool"; exit 77; }
+done
+"$fovstudy" devices >/dev/null 2>&1 || { echo "no Vulkan device"; exit 77; }
+
+rm -rf "$folder"
+mkdir -p "$folder"
+Xvfb -displayfd 3 -screen 0 1280x720x24 -nolisten tcp -noreset 3>"$folder/display" 2>/dev/null &
+server=$!
+program=
+trap 'kill $program $server 2>/dev/null' EXIT
+tries=0
+until [ -s "$folder/display" ]; do
+    tries=$((tries + 1))
+    [ $tries -gt 100 ] && { echo "Xvfb did not start"; exit 1; }
+    sleep 0.1
+done
+DISPLAY=:$(cat "$folder/display")
+export DISPLAY
+
+fail() {
+    echo "window test: $1"
+    cat "$folder/said" "$folder/events" 2>/dev/null
+    exit 1
+}
+alive() { kill -0 $program 2>/dev/null || fail "the program ended early"; }
+shot() { [ -n "$shots" ] && sleep 1 && import -window root "$shots/$1.png"; }
+key() { xdotool key "$1"; }
+events() { grep -c "$1" "$folder/events" 2>/dev/null; }
+# press KEY until there are N events like PATTERN
+press_until() {
+    tries=0
+    until [ "$(events "$3")" -ge "$2" ]; do
+        tries=$((tries + 1))
+        [ $tries -gt 120 ] && fail "no event $3 after many $1"
+        alive
+        key "$1"
+        sleep 0.5
+    done
+}
+
+"$fovstudy" run "$source/studies/protocols/short.yaml" --db "$folder/study.db" --participant w1 --display window \
+    --size 640x720 --scene atrium=town:triangles=20000 --gaze mouse --events "$folder/events" 2>"$folder/said" &
+program=$!
+: >"$folder/events"
+xdotool mousemove 320 360 # the middle of the left eye
+sleep 2
+alive
+[ "$(xdotool search --name '^fovstudy$' | wc -l)" -ge 1 ] || fail "the window is not called fovstudy"
+shot consent
+key Return # Enter does not consent
+sleep 0.5
+[ "$(sqlite3 "$folder/study.db" "SELECT count(*) FROM session WHERE consent_at IS NOT NULL")" = 0 ] || fail "Enter gave consent"
+key y
+shot instructions
+key Return
+shot ready
+press_until Return 1 '"event":"trial"'
+key 2 # too early: not both were seen
+sleep 0.3
+shot look_at_both
+press_until space 1 '"event":"toggle".*"ignored":false'
+if [ -n "$shots" ]; then
+    key p
+    shot pause
+    key Return
+    sleep 1
+    key Escape
+    shot abort
+    key n
+    sleep 1
+fi
+shot stimulus
+press_until 1 1 '"event":"answer"'
+press_until space 2 '"event":"toggle".*"trial":2.*"ignored":false' # A, B and A again
+press_until Right 2 '"event":"answer"'
+press_until Return 3 '"event":"trial"'
+sleep 1
+tries=0
+until [ "$(events '"table":"rating"')" -ge 1 ]; do
+    tries=$((tries + 1))
+    [ $tries -gt 60 ] && fail "no rating was taken"
+    alive
+    key Return # asks for the question
+    sleep 0.5
+    key 6
+    key Right
+    [ $tries = 1 ] && shot question
+    key Return
+    sleep 0.5
+done
+shot thanks
+wait $program
+status=$?
+program=
+[ $status = 0 ] || fail "exit status $status"
+[ -s "$folder/said" ] && fail "it said something"
+
+expect() {
+    got=$(sqlite3 "$folder/study.db" "$1")
+    [ "$got" = "$2" ] || fail "$1 gave '$got', not '$2'"
+}
+expect "PRAGMA integrity_check" ok
+expect "SELECT kind FROM participant" person
+expect "SELECT status, display, width_px, height_px, consent_version FROM session" "complete|window|640|720|1"
+expect "SELECT clock FROM segment WHERE boot_id IS NOT NULL" monotonic
+expect "SELECT group_concat(chosen) FROM choice" "a,b"
+expect "SELECT value FROM rating" 7.0
+expect "SELECT group_concat(status) FROM trial" "done,done,done"
+expect "SELECT count(*) FROM event WHERE kind = 'choice_early'" 1
+expect "SELECT count(*) FROM choice WHERE (SELECT count(DISTINCT option) FROM exposure e WHERE e.trial_id = choice.trial_id AND
+        full_start_ns < answered_ns) <> 2" 0
+expect "SELECT count(*) > 20 AND min(number) = 0 AND max(number) = count(*) - 1 FROM frame" 1
+expect "SELECT count(*) FROM frame WHERE present_ns < start_ns" 0
+# the cursor stood in the middle of the left eye
+expect "SELECT count(*) > 20 AND max(abs(x_deg)) < 0.5 AND max(abs(y_deg)) < 0.5 FROM gaze WHERE valid" 1
+echo "window test: consent to stored answers"
