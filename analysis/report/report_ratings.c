@@ -83,7 +83,7 @@ void report_ratings(const struct report *r)
     for (size_t i = 0; i < r->ratings.question_count; i++) {
         const struct rating_question *q = &r->ratings.questions[i];
         fputs("<h3>", r->out);
-        html_printf(r->out, "%s (%g to %g)", q->question, q->scale_min, q->scale_max);
+        html_printf(r->out, "Question \u201c%s\u201d, %g to %g", q->question, q->scale_min, q->scale_max);
         fputs("</h3>\n", r->out);
         if (i < REPORT_QUESTIONS)
             report_figure(
