@@ -8,6 +8,8 @@
 
 #define TAU 6.283185307179586
 
+enum { MERGED = 64 }; // span of faces in the smallest towns: as few triangles as the shapes allow
+
 static void add_light(struct scene *scene)
 {
     // A low evening sun; lanterns are lit and count in the shade.
@@ -44,10 +46,15 @@ static bool add_path(struct scene *scene)
     return camera_path_finish(&scene->path);
 }
 
+static struct voxel_style model_style(const struct town *town)
+{
+    return (struct voxel_style){.kinds = town->kinds, .span = town->span, .plain = town->span >= MERGED};
+}
+
 static void measure_models(struct town *town)
 {
     for (int i = 0; i < TOWN_MODELS; i++) {
-        struct voxel_style style = {.kinds = town->kinds, .span = town->span};
+        struct voxel_style style = model_style(town);
         town->triangles[i] = voxel_mesh(NULL, &town->models[i], &style);
     }
 }
@@ -86,7 +93,7 @@ static uint64_t choose(struct town *town)
 // The finest faces with which the town still reaches some way around the camera's path.
 static void choose_detail(struct town *town)
 {
-    static const int32_t spans[] = {1, 2, 4, 64};
+    static const int32_t spans[] = {1, 2, 4, MERGED};
     town->ground_cell = town->wanted < 150000 ? 3 : 1;
     town->country_cell = town->wanted < 150000 ? 30 : town->wanted < 600000 ? 15 : 6;
     for (size_t i = 0; i < sizeof spans / sizeof spans[0]; i++) {
@@ -103,9 +110,9 @@ static void choose_detail(struct town *town)
 
 static uint32_t mesh_of(struct town *town, enum town_model model)
 {
+    struct voxel_style style = model_style(town);
     maker_mesh_begin(town->maker);
-    voxel_mesh(town->maker, &town->models[model],
-               &(struct voxel_style){.kinds = town->kinds, .span = town->span});
+    voxel_mesh(town->maker, &town->models[model], &style);
     return maker_mesh_end(town->maker);
 }
 

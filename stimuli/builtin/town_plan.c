@@ -49,7 +49,9 @@ float town_ground(const struct town *town, float x, float z)
     return 0.5f * floorf(height * 2 + 0.5f);
 }
 
-static enum { GARDEN, SQUARE, PARK } block_use(const struct town *town, int32_t i, int32_t j)
+enum block_use { GARDEN, SQUARE, PARK };
+
+static enum block_use block_use(const struct town *town, int32_t i, int32_t j)
 {
     if (i == 0 && j == 0)
         return SQUARE;
@@ -175,7 +177,7 @@ void town_plan(struct town *town)
     qsort(town->blocks, TOWN_BLOCKS, sizeof *town->blocks, by_distance);
     for (int32_t k = 0; k < TOWN_BLOCKS; k++) {
         b = &town->blocks[k];
-        int use = block_use(town, b->i, b->j);
+        enum block_use use = block_use(town, b->i, b->j);
         if (b->j == 1 && b->i == 0) {
             plan_houses(town, b);
             continue;

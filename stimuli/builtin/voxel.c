@@ -104,7 +104,8 @@ static void fill_keys(struct layer *l)
             uint8_t own = cell_of(l, l->at, u, v);
             bool shown = own != VOXEL_AIR && face_shown(l, own, cell_of(l, l->at + l->sign, u, v));
             bool leafy = shown && l->style->kinds[own].leafy;
-            l->keys[v * nu + u] = shown ? (uint32_t)own << 8 | (leafy ? 0 : corner_shading(l, u, v)) : 0;
+            l->keys[v * nu + u] =
+                shown ? (uint32_t)own << 8 | (leafy || l->style->plain ? 0 : corner_shading(l, u, v)) : 0;
         }
     }
 }

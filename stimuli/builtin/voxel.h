@@ -37,6 +37,7 @@ uint8_t voxel_at(const struct voxel_model *model, int32_t x, int32_t y, int32_t 
 struct voxel_style {
     const struct voxel_kind *kinds; // by cell value
     int32_t span;  // faces of one kind and shading are merged into rectangles up to this many cells
+    bool plain;    // no contact shading, so that more faces merge
     bool floating; // draw the lowest cells' bottom faces too
 };
 
