@@ -37,10 +37,10 @@ static void write_formatted(FILE *out, const char *format, va_list arguments)
 {
     va_list again;
     va_copy(again, arguments);
-    char brief[256];
-    int size = vsnprintf(brief, sizeof brief, format, arguments);
-    if (size >= 0 && (size_t)size < sizeof brief) {
-        html_text(out, brief);
+    char small[256];
+    int size = vsnprintf(small, sizeof small, format, arguments);
+    if (size >= 0 && (size_t)size < sizeof small) {
+        html_text(out, small);
     } else if (size >= 0) {
         char *text = malloc((size_t)size + 1);
         if (text) {

@@ -86,7 +86,7 @@ static void agrees_with_r(void **state)
     assert_true(rows >= 200);
 }
 
-// Franke 2021, section 8.2, and issue text: p 0.0959 and 0.0092.
+// Franke 2021, section 8.2: p 0.096 and 0.009.
 static void known_answers(void **state)
 {
     (void)state;
