@@ -9,11 +9,12 @@
 #define PI 3.14159265358979323846
 
 // A hazy afternoon in the scene's own scale, in which a white wall is near 3 cd/m^2: sun 3.2 3.0 2.7 times pi
-// lx from 60 degrees above the horizon, and a sky of about 0.6 cd/m^2.
+// lx from 60 degrees above the horizon, and a sky of about 1.2 cd/m^2: a third of the light on the ground is
+// the sky's.
 static const struct dvec3 default_sun_direction = {0.35, 0.85, 0.3};
 static const float default_sun[3] = {3.2f * (float)PI, 3.0f * (float)PI, 2.7f * (float)PI};
 static const struct scene_sky default_sky = {
-    {0.42f, 0.56f, 0.82f}, {0.72f, 0.76f, 0.80f}, {0.26f, 0.24f, 0.21f}};
+    {0.50f, 0.85f, 1.60f}, {1.35f, 1.50f, 1.65f}, {0.52f, 0.48f, 0.42f}};
 
 // A file with only local lights was meant for the evening: a third of the day's sun and sky, so that lamps
 // still show.
@@ -117,9 +118,10 @@ bool gltf_build_lights(struct gltf_build *build, const struct dmat4 *world)
     else
         use_default_sun(scene, scene->light_count > 0 ? EVENING : 1.0f);
     limit_ranges(scene);
-    // A surface of albedo 0.3 that the sun meets at 45 degrees under the open sky:
-    // L = 0.3 / pi * (E_sun cos 45 + pi L_sky). Fixed, so that exposure never depends on where one looks.
+    // A surface of albedo 0.2 (stone, ground and plants together), half of the time in the sun, which meets it
+    // at 45 degrees, under the open sky: L = 0.2 / pi * (0.5 E_sun cos 45 + pi L_sky). Fixed, so that exposure
+    // never depends on where one looks.
     scene->luminance =
-        (float)(0.3 / PI * (luminance(scene->sun.illuminance) * 0.70710678 + PI * sky_luminance(scene)));
+        (float)(0.2 / PI * (0.5 * luminance(scene->sun.illuminance) * 0.70710678 + PI * sky_luminance(scene)));
     return true;
 }
