@@ -30,11 +30,12 @@ void main()
     bool direction = position.w < 0.0;
     vec3 away = direction ? position.xyz : position.xyz - world_from_eye[3].xyz;
     vec3 p = away * mat3(world_from_eye); // the transposed rotation
-    if (direction ? p.z >= 0.0 : -p.z < frame.near_m)
+    // written so that what is not a number is out: the motion of an object once scaled to nothing is none
+    if (any(isnan(p)) || any(isinf(p)) || (direction ? p.z >= 0.0 : -p.z < frame.near_m))
         return;
     vec2 size = vec2(frame.width, frame.height);
     vec2 at = floor(view_pixel(frame.eyes[eye], size, p));
-    if (any(lessThan(at, vec2(0.0))) || any(greaterThanEqual(at, size)))
+    if (!all(greaterThanEqual(at, vec2(0.0))) || !all(lessThan(at, size)))
         return;
     if (view_eccentricity_deg(frame.eyes[eye], view_ray(frame.eyes[eye], size, at + 0.5)) < push.drop_deg)
         return;
