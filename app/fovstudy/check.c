@@ -1,6 +1,7 @@
 // `fovstudy check`: reads a protocol as `run` would and prints a participant's exact trials; no GPU, nothing
 // written.
 #include "app/fovstudy/catalogue.h"
+#include "app/fovstudy/check_number.h"
 #include "app/fovstudy/commands.h"
 #include "app/fovstudy/options.h"
 #include "studies/engine/plan.h"
@@ -92,23 +93,15 @@ static int read_request(struct request *out, int argc, char **argv)
     return -1;
 }
 
-// The number that the study file gives this participant.
+// The number that the study file gives this participant, unless the command line did.
 static bool look_up(struct request *request)
 {
-    struct store_error error;
-    int64_t number = 0;
-    struct store *store =
-        store_open(&(struct store_desc){.path = request->database, .access = STORE_READ}, &error);
-    if (!store) {
-        fprintf(stderr, "fovstudy: %s\n", error.text);
-        return false;
-    }
-    int64_t wanted = request->has_number ? (int64_t)request->number : 0;
-    bool found = store_participant_number(store, request->participant, wanted, &number, &error) == STORE_OK;
+    char error[STORE_ERROR_SIZE];
+    if (!request->participant || !request->database || request->has_number)
+        return true;
+    bool found = check_number(request->database, request->participant, &request->number, error, sizeof error);
     if (!found)
-        fprintf(stderr, "fovstudy: %s\n", error.text);
-    store_close(store, &error);
-    request->number = (uint64_t)number;
+        fprintf(stderr, "fovstudy: %s\n", error);
     return found;
 }
 
@@ -148,7 +141,7 @@ int command_check(int argc, char **argv)
     status = EXIT_FAILED;
     if (!protocol)
         fprintf(stderr, "fovstudy: %s\n", error);
-    else if (!request.participant || !request.database || look_up(&request))
+    else if (look_up(&request))
         status = print(&request, protocol);
     protocol_destroy(protocol);
     study_names_finish(&names);

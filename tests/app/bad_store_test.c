@@ -87,7 +87,8 @@ static void a_full_disk_loses_no_acknowledged_answer(void **state)
         result = command(
             "test -f '%s/full.jsonl' || exit 0; sqlite3 '%s/full.db' 'PRAGMA integrity_check' && for k in "
             "choice rating; do n=$(grep -c \"\\\"table\\\":\\\"$k\\\"\" '%s/full.jsonl'); "
-            "test $n = 0 || test \"$(sqlite3 '%s/full.db' \"SELECT count(*) >= $n FROM $k\")\" = 1 || echo lost $k; done",
+            "test $n = 0 || test \"$(sqlite3 '%s/full.db' \"SELECT count(*) >= $n FROM $k\")\" = 1 || echo "
+            "lost $k; done",
             folder, folder, folder, folder);
         if (strcmp(result->out, "ok\n") != 0 && result->out[0])
             print_error("%d blocks: %s %s\n", blocks, result->out, result->err);

@@ -221,10 +221,23 @@ static void others_answer_from_the_measured_errors(void **state)
     (void)state;
     const struct command_result *result =
         command("fovstudy run '%s/studies/protocols/short.yaml' --db '%s/a.db' --participant p2 --observer sim "
-                "--display none",
-                SOURCE_DIR, folder);
+                "--display none --events '%s/a.jsonl'",
+                SOURCE_DIR, folder, folder);
     assert_string_equal(result->err, "");
     assert_int_equal(result->status, 0);
+    // The lines are appended and their numbers go on.
+    result = command(
+        "sed 's/^{\"seq\":\\([0-9]*\\),.*/\\1/' '%s/a.jsonl' > '%s/seen' && seq 1 $(wc -l < '%s/seen') | "
+        "cmp - '%s/seen'",
+        folder, folder, folder, folder);
+    assert_int_equal(result->status, 0);
+    // `check` looks the number up in the study file.
+    assert_int_equal(
+        command("fovstudy check '%s/studies/protocols/short.yaml' --db '%s/a.db' --participant p2 > "
+                "'%s/known' && fovstudy check '%s/studies/protocols/short.yaml' --number 2 | cmp - '%s/known'",
+                SOURCE_DIR, folder, folder, SOURCE_DIR, folder)
+            ->status,
+        0);
     expect("SELECT count(*), max(number) FROM participant", "2|2");
     expect("SELECT count(*) FROM choice", "4");
     expect("SELECT count(DISTINCT session_id) FROM frame", "1");
