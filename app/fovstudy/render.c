@@ -12,10 +12,21 @@
 #include <string.h>
 #include <sys/stat.h>
 
+// What draws: the mode asked for and, where there is one, the mode it is held against.
+struct drawing {
+    struct renderer_option *option, *against;
+};
+
+struct difference {
+    double total, values; // of rgb
+    int max;
+};
+
 enum gaze_kind { GAZE_AT, GAZE_SCRIPT };
 
 struct request {
     struct mode_choice choice;
+    struct mode_choice against; // mode NULL: none
     const char *scene;
     const char *out; // NULL: no pictures
     const char *device;
@@ -30,6 +41,7 @@ struct request {
 
 enum {
     OPTION_MODE,
+    OPTION_AGAINST,
     OPTION_SCENE,
     OPTION_OUT,
     OPTION_FRAMES,
@@ -48,6 +60,9 @@ enum {
 
 static const struct option_spec specs[] = {
     [OPTION_MODE] = {"mode", "MODE[:p=v,...]", "rendering mode, see 'fovstudy modes'"},
+    [OPTION_AGAINST] =
+        {"against", "MODE[:p=v,...]",
+         "draw a second mode too: NNNN-left-against.png, and NNNN-left-difference.png, 8 times as strong"},
     [OPTION_SCENE] = {"scene", "NAME|FILE", "a built-in scene, see 'fovstudy scenes', or a .gltf or .glb file"},
     [OPTION_OUT] = {"out", "DIR", "folder for the pictures, made where missing: NNNN-left.png, NNNN-right.png"},
     [OPTION_FRAMES] = {"frames", "N", "frames to walk, 1/90 s each (1)"},
@@ -130,7 +145,7 @@ static void take_flag(int option, struct request *r)
 static int read_options(int argc, char **argv, struct request *r)
 {
     struct options options;
-    const char *mode = NULL;
+    const char *mode = NULL, *against = NULL;
     char error[1024];
     options_start(&options, argc, argv, "render", specs);
     for (int i = options_next(&options); i != OPTIONS_DONE; i = options_next(&options)) {
@@ -149,6 +164,8 @@ static int read_options(int argc, char **argv, struct request *r)
             take_flag(i, r);
         else if (i == OPTION_MODE)
             mode = options.value;
+        else if (i == OPTION_AGAINST)
+            against = options.value;
         else if (i == OPTION_SCENE)
             r->scene = options.value;
         else if (i == OPTION_OUT)
@@ -162,7 +179,8 @@ static int read_options(int argc, char **argv, struct request *r)
         return options_wrong("render", "%s is missing", mode ? "--scene" : "--mode");
     if (!r->out && !r->explain && !r->times)
         return options_wrong("render", "--out DIR is missing (or --explain, or --times)");
-    if (!mode_parse(mode, &r->choice, error, sizeof error))
+    if (!mode_parse(mode, &r->choice, error, sizeof error) ||
+        (against && !mode_parse(against, &r->against, error, sizeof error)))
         return options_wrong("render", "%s", error);
     return -1;
 }
@@ -201,17 +219,48 @@ static bool write_picture(const struct request *r, uint64_t number, int eye, con
     return false;
 }
 
-static bool write_frame(const struct request *r, struct renderer_option *option, uint64_t number)
+// |a - b|, 8 times as strong, so that a few levels can be seen.
+static void subtract(const uint8_t *a, const uint8_t *b, size_t count, uint8_t *out, struct difference *sum)
 {
-    uint8_t *pixels = malloc(4 * (size_t)r->width * r->height);
-    bool ok = pixels != NULL;
-    for (int eye = 0; eye < EYES && ok; eye++) {
-        ok = renderer_read(option, eye, pixels) && write_picture(r, number, eye, "", 4, pixels);
-        if (ok && r->redraw_map)
-            ok = renderer_read_redraw_map(option, eye, pixels) &&
-                 write_picture(r, number, eye, "-redraw", 1, pixels);
+    for (size_t i = 0; i < count; i++) {
+        int d = abs(a[i] - b[i]);
+        out[i] = (uint8_t)(8 * d < 255 ? 8 * d : 255);
+        sum->max = d > sum->max ? d : sum->max;
+        sum->total += d;
+        sum->values += i % 4 != 3;
     }
-    free(pixels);
+}
+
+static bool write_eye(const struct request *r, const struct drawing *d, uint64_t number, int eye,
+                      uint8_t *pixels[2], struct difference *difference)
+{
+    if (!renderer_read(d->option, eye, pixels[0]) || !write_picture(r, number, eye, "", 4, pixels[0]))
+        return false;
+    if (d->against) {
+        if (!renderer_read(d->against, eye, pixels[1]) ||
+            !write_picture(r, number, eye, "-against", 4, pixels[1]))
+            return false;
+        subtract(pixels[0], pixels[1], 4 * (size_t)r->width * r->height, pixels[1], difference);
+        if (!write_picture(r, number, eye, "-difference", 4, pixels[1]))
+            return false;
+    }
+    return !r->redraw_map || (renderer_read_redraw_map(d->option, eye, pixels[0]) &&
+                              write_picture(r, number, eye, "-redraw", 1, pixels[0]));
+}
+
+static bool write_frame(const struct request *r, const struct drawing *d, uint64_t number)
+{
+    const size_t size = 4 * (size_t)r->width * r->height;
+    uint8_t *pixels[2] = {malloc(size), malloc(size)};
+    struct difference difference = {0};
+    bool ok = pixels[0] && pixels[1];
+    for (int eye = 0; eye < EYES && ok; eye++)
+        ok = write_eye(r, d, number, eye, pixels, &difference);
+    if (ok && d->against)
+        printf("frame %llu: mean difference %.4f, largest %d of 255\n", (unsigned long long)number,
+               difference.total / difference.values, difference.max);
+    free(pixels[0]);
+    free(pixels[1]);
     return ok;
 }
 
@@ -227,15 +276,16 @@ static void print_times(const struct request *r, const struct frame_stats *s)
         printf("  %-20s %8.3f ms\n", s->timers[i].name, s->timers[i].ms);
 }
 
-static bool walk(const struct request *r, const struct scene *scene, struct renderer_option *option)
+static bool walk(const struct request *r, const struct scene *scene, const struct drawing *drawing)
 {
     struct frame_stats stats = {0};
     for (uint64_t n = 0; n < r->frames; n++) {
         struct frame frame;
         make_frame(r, scene, n, &frame);
-        if (!renderer_draw(option, &frame, &stats))
+        if (!renderer_draw(drawing->option, &frame, &stats) ||
+            (drawing->against && !renderer_draw(drawing->against, &frame, NULL)))
             return false;
-        if (r->out && (r->all || n + 1 == r->frames) && !write_frame(r, option, n))
+        if (r->out && (r->all || n + 1 == r->frames) && !write_frame(r, drawing, n))
             return false;
     }
     if (r->times)
@@ -268,15 +318,20 @@ static bool render(const struct request *r, const struct scene *scene)
                                        .pass_times = r->times};
     struct renderer *renderer = renderer_create(&desc);
     struct renderer_scene *uploaded = renderer ? renderer_scene_create(renderer, scene) : NULL;
-    struct renderer_option *option = uploaded ? renderer_option_create(renderer, uploaded, &r->choice) : NULL;
-    bool ok = option != NULL;
+    struct drawing drawing = {0};
+    if (uploaded)
+        drawing.option = renderer_option_create(renderer, uploaded, &r->choice);
+    if (drawing.option && r->against.mode)
+        drawing.against = renderer_option_create(renderer, uploaded, &r->against);
+    bool ok = drawing.option && (drawing.against || !r->against.mode);
     if (ok && r->explain) {
         char text[10240];
-        ok = renderer_option_explain(option, text, sizeof text);
+        ok = renderer_option_explain(drawing.option, text, sizeof text);
         printf("%s on %s\n%s", scene->name, renderer_device(renderer)->name, text);
     }
-    ok = ok && (!r->out || make_folder(r->out)) && walk(r, scene, option);
-    renderer_option_destroy(option);
+    ok = ok && (!r->out || make_folder(r->out)) && walk(r, scene, &drawing);
+    renderer_option_destroy(drawing.option);
+    renderer_option_destroy(drawing.against);
     renderer_scene_destroy(uploaded);
     if (renderer && renderer_validation_messages(renderer))
         ok = false;

@@ -3,9 +3,20 @@
 #include <stdlib.h>
 #include <string.h>
 
+static bool plain_uv(const struct scene_material *m)
+{
+    static const float identity[6] = {1, 0, 0, 0, 1, 0};
+    for (uint32_t slot = 0; slot < SCENE_SLOTS; slot++) {
+        const struct scene_texture_use *use = &m->use[slot];
+        if (use->texture >= 0 && (use->uv_set != 0 || memcmp(use->transform, identity, sizeof identity) != 0))
+            return false;
+    }
+    return true;
+}
+
 static uint32_t features_of(const struct scene_material *m)
 {
-    uint32_t features = m->alpha_mask ? SCENE_GPU_MASK : 0;
+    uint32_t features = (m->alpha_mask ? SCENE_GPU_MASK : 0) | (plain_uv(m) ? SCENE_GPU_PLAIN_UV : 0);
     for (uint32_t slot = 0; slot < SCENE_SLOTS; slot++)
         features |= m->use[slot].texture >= 0 ? 1u << slot : 0;
     bool glows = m->emissive[0] > 0 || m->emissive[1] > 0 || m->emissive[2] > 0;

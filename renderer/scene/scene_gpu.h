@@ -12,7 +12,9 @@
 // What a bucket's pipeline must do: one bit per thing that costs something.
 enum {
     SCENE_GPU_MASK = 1 << SCENE_SLOTS,           // alpha test
-    SCENE_GPU_EMISSIVE = 1 << (SCENE_SLOTS + 1), // emissive factor without a texture
+    SCENE_GPU_EMISSIVE = 1 << (SCENE_SLOTS + 1), // glows, with or without a texture
+    SCENE_GPU_PLAIN_UV = 1 << (SCENE_SLOTS + 2), // every texture reads the first set as it is
+    SCENE_GPU_FEATURES = SCENE_SLOTS + 3,
     // bits 0..SCENE_SLOTS-1: the texture slot is used
 };
 

@@ -119,11 +119,9 @@ static bool create_pipelines(struct gbuffer *g)
             gpu_say(g->gpu, GPU_ERROR, "the scene's materials need more than %d pipelines", GBUFFER_PIPELINES);
             return false;
         }
-        int32_t constants[SCENE_SLOTS + 2];
-        for (uint32_t slot = 0; slot < SCENE_SLOTS; slot++)
-            constants[slot] = (int32_t)(features >> slot & 1);
-        constants[SCENE_SLOTS] = (features & SCENE_GPU_MASK) != 0;
-        constants[SCENE_SLOTS + 1] = (features & SCENE_GPU_EMISSIVE) != 0;
+        int32_t constants[SCENE_GPU_FEATURES];
+        for (uint32_t bit = 0; bit < SCENE_GPU_FEATURES; bit++)
+            constants[bit] = (int32_t)(features >> bit & 1);
         VkPipeline pipeline =
             gpu_raster_create(g->gpu, &(struct gpu_raster_desc){.name = "g-buffer",
                                                                 .vertex = {gbuffer_vert, sizeof gbuffer_vert},

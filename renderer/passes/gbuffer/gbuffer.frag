@@ -6,13 +6,7 @@
 
 // EMISSIVE and ID: the scene has those targets
 
-layout(constant_id = 0) const bool has_base = false;
-layout(constant_id = 1) const bool has_metallic_roughness = false;
-layout(constant_id = 2) const bool has_normal = false;
-layout(constant_id = 3) const bool has_occlusion = false;
-layout(constant_id = 4) const bool has_emissive = false;
-layout(constant_id = 5) const bool alpha_mask = false;
-layout(constant_id = 6) const bool glows = false;
+#include "renderer/passes/gbuffer/features.glsl"
 
 layout(scalar, set = 0, binding = 3) readonly buffer Materials { shared_material materials[]; };
 layout(set = 1, binding = 0) uniform sampler2D base_texture;
@@ -42,13 +36,13 @@ void main()
     shared_material m = materials[in_ids.x];
     vec4 base = m.base_colour * in_colour;
     if (has_base)
-        base *= texture(base_texture, in_uv[0]);
+        base *= texture(base_texture, in_uv[plain_uv ? 0 : 0]);
     if (alpha_mask && base.a < m.alpha_cutoff)
         discard;
 
     vec3 normal = normalize(in_normal);
     if (has_normal) {
-        vec3 t = texture(normal_texture, in_uv[2]).xyz * 2.0 - 1.0;
+        vec3 t = texture(normal_texture, in_uv[plain_uv ? 0 : 2]).xyz * 2.0 - 1.0;
         t.xy *= m.normal_scale;
         vec3 tangent = normalize(in_tangent.xyz - normal * dot(normal, in_tangent.xyz));
         vec3 bitangent = cross(normal, tangent) * in_tangent.w;
@@ -59,10 +53,10 @@ void main()
 
     vec2 surface = vec2(m.roughness, m.metallic);
     if (has_metallic_roughness)
-        surface *= texture(metallic_roughness_texture, in_uv[1]).gb;
+        surface *= texture(metallic_roughness_texture, in_uv[plain_uv ? 0 : 1]).gb;
     float occlusion = 1.0;
     if (has_occlusion)
-        occlusion = mix(1.0, texture(occlusion_texture, in_uv[3]).r, m.occlusion_strength);
+        occlusion = mix(1.0, texture(occlusion_texture, in_uv[plain_uv ? 0 : 3]).r, m.occlusion_strength);
     out_base = vec4(base.rgb, occlusion);
     out_normal = packSnorm2x16(normal_encode(normal));
     out_surface = vec4(surface, 0.0, 0.0);
@@ -71,7 +65,7 @@ void main()
     if (glows) {
         emissive = m.emissive;
         if (has_emissive)
-            emissive *= texture(emissive_texture, in_uv[4]).rgb;
+            emissive *= texture(emissive_texture, in_uv[plain_uv ? 0 : 4]).rgb;
     }
     out_emissive = vec4(emissive, 0.0);
 #endif

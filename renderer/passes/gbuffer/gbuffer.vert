@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "renderer/shared/shared.h"
 #include "renderer/shared/normal.glsl"
+#include "renderer/passes/gbuffer/features.glsl"
 
 layout(scalar, set = 0, binding = 0) readonly buffer Frame { shared_frame frame; };
 layout(scalar, set = 0, binding = 1) readonly buffer Items { shared_item items[]; };
@@ -43,9 +44,17 @@ void main()
     mat3 cofactor = mat3(cross(linear[1], linear[2]), cross(linear[2], linear[0]), cross(linear[0], linear[1]));
     float winding = dot(linear[0], cofactor[0]) < 0.0 ? -1.0 : 1.0;
     out_normal = winding * (cofactor * normal_decode(in_normal));
-    out_tangent = vec4(linear * in_tangent.xyz, winding * (in_tangent.w < 0.0 ? -1.0 : 1.0));
-    for (uint slot = 0; slot < 5; slot++)
-        out_uv[slot] = uv_of(materials[item.material], slot);
+    if (has_normal)
+        out_tangent = vec4(linear * in_tangent.xyz, winding * (in_tangent.w < 0.0 ? -1.0 : 1.0));
+    if (plain_uv) {
+        out_uv[0] = in_uv0;
+    } else {
+        const bool used[5] = bool[5](has_base, has_metallic_roughness, has_normal, has_occlusion, has_emissive);
+        for (uint slot = 0; slot < 5; slot++) {
+            if (used[slot])
+                out_uv[slot] = uv_of(materials[item.material], slot);
+        }
+    }
     out_colour = in_colour;
     out_ids = uvec2(item.material, objects[item.object].moving_id);
 }
