@@ -12,8 +12,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-// Cap height. 1.8 degrees is more than twenty times the acuity limit of a headset with 15 pixels per degree, and
-// readable in the blur of a simple lens; below 13 px the strokes of the font run into each other.
+// Cap height. 1.8 degrees is more than twenty times the acuity limit of a headset with 15 pixels per degree,
+// and readable in the blur of a simple lens; below 13 px the strokes of the font run into each other.
 #define TEXT_CAP_DEG 1.8
 #define TEXT_CAP_MIN_PX 13.0
 #define TEXT_DISTANCE_M 2.0 // vergence of 1.8 degrees, near the resting point of most headset optics
