@@ -1,7 +1,7 @@
 // A camera path: a closed smooth curve flown at a given speed.
 //
-// Positions and viewing targets are closed Catmull-Rom curves through the same knots. The flight keeps the path's
-// speed except where the view would turn faster than CAMERA_PATH_MAX_DEG_S; there it slows down.
+// Positions and viewing targets are closed Catmull-Rom curves through the same knots. The flight keeps the
+// path's speed except where the view would turn faster than CAMERA_PATH_MAX_DEG_S; there it slows down.
 #ifndef STIMULI_CAMERA_PATH_H
 #define STIMULI_CAMERA_PATH_H
 
@@ -30,14 +30,14 @@ struct camera_path_knot {
 
 struct camera_path {
     struct camera_path_knot knots[CAMERA_PATH_KNOTS];
-    uint32_t knot_count; // 1: a still camera
-    double speed_m_s;    // 0 < speed <= CAMERA_PATH_MAX_M_S
-    double duration_s;   // of one round; set by camera_path_finish
+    uint32_t knot_count;                    // 1: a still camera
+    double speed_m_s;                       // 0 < speed <= CAMERA_PATH_MAX_M_S
+    double duration_s;                      // of one round; set by camera_path_finish
     double time_s[CAMERA_PATH_SAMPLES + 1]; // curve parameter i / CAMERA_PATH_SAMPLES is reached at time_s[i]
 };
 
-// Measures the curve and lays out the time table. False where there is no knot, a value is not finite, the speed is
-// out of range or a target coincides with the curve.
+// Measures the curve and lays out the time table. False where there is no knot, a value is not finite, the
+// speed is out of range or a target coincides with the curve.
 bool camera_path_finish(struct camera_path *path);
 
 // Pose of the head at a time; time repeats with duration_s. Upright: the head's x axis stays horizontal.

@@ -52,12 +52,12 @@ struct dvec3 dvec3_add(struct dvec3 a, struct dvec3 b)
 
 struct dvec3 dvec3_sub(struct dvec3 a, struct dvec3 b)
 {
-    return out(in(a) - in(b));
+    return out(in(a)-in(b));
 }
 
 struct dvec3 dvec3_scale(struct dvec3 a, double s)
 {
-    return out(in(a) * s);
+    return out(in(a)*s);
 }
 
 struct dvec3 dvec3_cross(struct dvec3 a, struct dvec3 b)
@@ -93,7 +93,7 @@ struct dmat4 dmat4_identity(void)
 
 struct dmat4 dmat4_multiply(const struct dmat4 *a, const struct dmat4 *b)
 {
-    return out(in(a) * in(b));
+    return out(in(a)*in(b));
 }
 
 struct dmat4 dmat4_inverse(const struct dmat4 *a)
@@ -118,12 +118,12 @@ struct dmat4 dmat4_compose(struct dvec3 translation, struct dquat rotation, stru
 
 struct dvec3 dmat4_point(const struct dmat4 *a, struct dvec3 p)
 {
-    return out(glm::dvec3(in(a) * glm::dvec4(in(p), 1)));
+    return out(glm::dvec3(in(a)*glm::dvec4(in(p), 1)));
 }
 
 struct dvec3 dmat4_direction(const struct dmat4 *a, struct dvec3 d)
 {
-    return out(glm::dvec3(in(a) * glm::dvec4(in(d), 0)));
+    return out(glm::dvec3(in(a)*glm::dvec4(in(d), 0)));
 }
 
 struct dquat dquat_normalise(struct dquat q)
@@ -138,7 +138,7 @@ struct dquat dquat_slerp(struct dquat a, struct dquat b, double t)
 
 struct dvec3 dquat_rotate(struct dquat q, struct dvec3 v)
 {
-    return out(in(q) * in(v));
+    return out(in(q)*in(v));
 }
 
 struct dquat dquat_look(struct dvec3 forward, struct dvec3 up)
@@ -153,7 +153,8 @@ struct dquat dquat_look(struct dvec3 forward, struct dvec3 up)
     return out(glm::normalize(glm::quat_cast(glm::dmat3(right, glm::cross(back, right), back))));
 }
 
-struct fmat4 geometry_projection(double tan_left, double tan_right, double tan_down, double tan_up, double near_m)
+struct fmat4 geometry_projection(double tan_left, double tan_right, double tan_down, double tan_up,
+                                 double near_m)
 {
     glm::dmat4 p(0);
     p[0][0] = 2 / (tan_right + tan_left);
@@ -176,7 +177,7 @@ struct fmat4 geometry_view(const struct pose *eye, struct dvec3 origin)
 {
     glm::dmat3 eye_from_world = glm::transpose(glm::mat3_cast(in(eye->orientation)));
     glm::dmat4 r(eye_from_world);
-    r[3] = glm::dvec4(eye_from_world * (in(origin) - in(eye->position)), 1);
+    r[3] = glm::dvec4(eye_from_world * (in(origin)-in(eye->position)), 1);
     return narrow(r);
 }
 
@@ -193,7 +194,7 @@ struct fmat4 fmat4_inverse(const struct fmat4 *a)
 struct dvec3 geometry_snap_origin(struct dvec3 origin, struct dvec3 position)
 {
     const double grid_m = 64, leash_m = 128;
-    glm::dvec3 away = glm::abs(in(position) - in(origin));
+    glm::dvec3 away = glm::abs(in(position)-in(origin));
     if (glm::max(away.x, glm::max(away.y, away.z)) <= leash_m)
         return origin;
     return out(glm::round(in(position) / grid_m) * grid_m);

@@ -1,5 +1,6 @@
-// A scene in plain C: meshes cut into submodels, materials, textures with mip maps, nodes, lights, animation and a
-// camera path. glTF files (gltf.h) and code (builtin/builtin.h) both make one; the renderer only reads it.
+// A scene in plain C: meshes cut into submodels, materials, textures with mip maps, nodes, lights, animation
+// and a camera path. glTF files (gltf.h) and code (builtin/builtin.h) both make one; the renderer only reads
+// it.
 //
 // Use: scene_open("town:triangles=200000" or "x.gltf") -> read the arrays -> scene_destroy.
 // A scene does not: draw, own anything on a GPU, or change after it was made (scene_pose writes to the caller's
@@ -25,7 +26,8 @@ enum {
 struct scene_vertex {
     float position[3];  // metres, mesh space
     int16_t normal[2];  // unit, octahedral, snorm; scene_encode_normal
-    int16_t tangent[4]; // xyz unit snorm, w the sign of the bitangent (+-32767); bitangent = w * cross(normal, tangent)
+    int16_t tangent[4]; // xyz unit snorm, w the sign of the bitangent (+-32767); bitangent = w * cross(normal,
+                        // tangent)
     float uv[2][2];     // two sets of texture coordinates, v down as in glTF
     uint8_t colour[4];  // linear rgba, unorm; white where the file has none
 };
@@ -48,18 +50,19 @@ struct scene_mesh {
 };
 
 enum scene_slot {
-    SCENE_BASE_COLOUR,         // sRGB, alpha
-    SCENE_METALLIC_ROUGHNESS,  // linear: roughness in g, metallic in b
-    SCENE_NORMAL,              // linear, tangent space, y up (OpenGL convention)
-    SCENE_OCCLUSION,           // linear, r
-    SCENE_EMISSIVE,            // sRGB
+    SCENE_BASE_COLOUR,        // sRGB, alpha
+    SCENE_METALLIC_ROUGHNESS, // linear: roughness in g, metallic in b
+    SCENE_NORMAL,             // linear, tangent space, y up (OpenGL convention)
+    SCENE_OCCLUSION,          // linear, r
+    SCENE_EMISSIVE,           // sRGB
     SCENE_SLOTS
 };
 
 struct scene_texture_use {
     int32_t texture;    // index into scene.textures, -1 for none
     uint32_t uv_set;    // 0 or 1
-    float transform[6]; // u' = t0 u + t1 v + t2, v' = t3 u + t4 v + t5 (KHR_texture_transform); identity 1 0 0 0 1 0
+    float transform[6]; // u' = t0 u + t1 v + t2, v' = t3 u + t4 v + t5 (KHR_texture_transform); identity 1 0 0
+                        // 0 1 0
 };
 
 struct scene_material {
@@ -112,7 +115,8 @@ struct scene_channel {
     enum scene_interpolation interpolation;
     uint32_t key_count;
     float *times;  // owned, seconds, strictly increasing
-    float *values; // owned, 3 or 4 floats a key; three such groups a key (in-tangent, value, out-tangent) for CUBIC
+    float *values; // owned, 3 or 4 floats a key; three such groups a key (in-tangent, value, out-tangent) for
+                   // CUBIC
 };
 
 struct scene_sun {
@@ -124,7 +128,7 @@ struct scene_light {
     struct dvec3 position; // metres, world
     float intensity[3];    // cd, linear rgb
     float range_m;         // finite; the light is windowed to zero there (KHR_lights_punctual's recommendation)
-    struct dvec3 direction; // unit, where a spot shines; unused for a point light
+    struct dvec3 direction;     // unit, where a spot shines; unused for a point light
     float cos_inner, cos_outer; // of a spot's half angles; cos_outer = -2 for a point light
 };
 
@@ -171,28 +175,28 @@ struct scene {
     char notes[1024]; // what the file has and we do not draw: one sentence a line, for stderr; "" for none
 };
 
-// Opens a built-in scene ("atrium", "town", "town:triangles=N,seed=N") or a glTF/GLB file by its path (a name that
-// ends in .gltf or .glb, or contains a slash). On failure returns NULL and writes one sentence to `error`: the file
-// or name, what is wrong, and where.
+// Opens a built-in scene ("atrium", "town", "town:triangles=N,seed=N") or a glTF/GLB file by its path (a name
+// that ends in .gltf or .glb, or contains a slash). On failure returns NULL and writes one sentence to `error`:
+// the file or name, what is wrong, and where.
 struct scene *scene_open(const char *spec, char *error, size_t error_size);
 void scene_destroy(struct scene *scene);
 
-// World transforms of all nodes at a time; `out_world_from_node` holds scene->node_count matrices. Time repeats with
-// animation_s. With moving_only, entries of nodes that do not move are left alone.
+// World transforms of all nodes at a time; `out_world_from_node` holds scene->node_count matrices. Time repeats
+// with animation_s. With moving_only, entries of nodes that do not move are left alone.
 void scene_pose(const struct scene *scene, double time_s, bool moving_only, struct dmat4 *out_world_from_node);
 
 // --- for those who make scenes ---
 
 void scene_encode_normal(const float normal[3], int16_t out[2]);
 
-// Tangents for vertices whose tangent w is 0, from normals and uv[0] per index triple (area-weighted, Gram-Schmidt);
-// where texture coordinates are degenerate, any direction normal to the normal.
+// Tangents for vertices whose tangent w is 0, from normals and uv[0] per index triple (area-weighted,
+// Gram-Schmidt); where texture coordinates are degenerate, any direction normal to the normal.
 void scene_make_tangents(struct scene_vertex *vertices, uint32_t vertex_count, const uint32_t *indices,
                          uint32_t index_count);
 
-// Cuts an index range of one material into submodels of at most SCENE_SUBMODEL_TRIANGLES triangles, compact in space
-// (meshoptimizer orders and clusters), reordering indices[0..index_count) in place. first_index is added to each
-// submodel's first_index. Writes at most index_count / 3 submodels to out; returns how many.
+// Cuts an index range of one material into submodels of at most SCENE_SUBMODEL_TRIANGLES triangles, compact in
+// space (meshoptimizer orders and clusters), reordering indices[0..index_count) in place. first_index is added
+// to each submodel's first_index. Writes at most index_count / 3 submodels to out; returns how many.
 uint32_t scene_split(const struct scene_vertex *vertices, uint32_t vertex_count, uint32_t *indices,
                      uint32_t index_count, uint32_t first_index, uint32_t material, struct scene_submodel *out);
 

@@ -6,16 +6,17 @@ static const double rad_per_deg = 0.017453292519943295769;
 
 struct viewing_fov viewing_symmetric_fov(double vertical_deg, uint32_t width, uint32_t height)
 {
-    double tan_up = vertical_deg > 0 && vertical_deg < 180 && width && height ? tan(vertical_deg / 2 * rad_per_deg)
-                                                                              : (double)NAN;
+    double tan_up = vertical_deg > 0 && vertical_deg < 180 && width && height
+                        ? tan(vertical_deg / 2 * rad_per_deg)
+                        : (double)NAN;
     double tan_right = tan_up * width / height;
     return (struct viewing_fov){tan_right, tan_right, tan_up, tan_up};
 }
 
 bool viewing_fov_ok(const struct viewing_fov *fov)
 {
-    return isfinite(fov->tan_left) && isfinite(fov->tan_right) && isfinite(fov->tan_down) && isfinite(fov->tan_up) &&
-           fov->tan_left + fov->tan_right > 0 && fov->tan_down + fov->tan_up > 0;
+    return isfinite(fov->tan_left) && isfinite(fov->tan_right) && isfinite(fov->tan_down) &&
+           isfinite(fov->tan_up) && fov->tan_left + fov->tan_right > 0 && fov->tan_down + fov->tan_up > 0;
 }
 
 double viewing_pixels_per_degree(const struct viewing_fov *fov, uint32_t height)
@@ -41,8 +42,8 @@ void viewing_angles(struct dvec3 d, double *out_x_deg, double *out_y_deg)
     *out_y_deg = atan2(d.y, hypot(d.x, d.z)) / rad_per_deg;
 }
 
-bool viewing_pixel(const struct viewing_fov *fov, uint32_t width, uint32_t height, struct dvec3 d, double *out_x,
-                   double *out_y)
+bool viewing_pixel(const struct viewing_fov *fov, uint32_t width, uint32_t height, struct dvec3 d,
+                   double *out_x, double *out_y)
 {
     if (!(d.z < 0))
         return false;
@@ -51,7 +52,8 @@ bool viewing_pixel(const struct viewing_fov *fov, uint32_t width, uint32_t heigh
     return true;
 }
 
-struct dvec3 viewing_pixel_direction(const struct viewing_fov *fov, uint32_t width, uint32_t height, double x, double y)
+struct dvec3 viewing_pixel_direction(const struct viewing_fov *fov, uint32_t width, uint32_t height, double x,
+                                     double y)
 {
     struct dvec3 d = {x / width * (fov->tan_left + fov->tan_right) - fov->tan_left,
                       fov->tan_up - y / height * (fov->tan_down + fov->tan_up), -1};

@@ -35,7 +35,8 @@ void viewing_angles(struct dvec3 direction, double *out_x_deg, double *out_y_deg
 bool viewing_pixel(const struct viewing_fov *fov, uint32_t width, uint32_t height, struct dvec3 direction,
                    double *out_x, double *out_y);
 // The direction of a point of the image (pixel centres are at +0.5).
-struct dvec3 viewing_pixel_direction(const struct viewing_fov *fov, uint32_t width, uint32_t height, double x, double y);
+struct dvec3 viewing_pixel_direction(const struct viewing_fov *fov, uint32_t width, uint32_t height, double x,
+                                     double y);
 
 enum gaze_eye { GAZE_LEFT, GAZE_RIGHT, GAZE_BOTH };
 

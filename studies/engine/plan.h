@@ -66,7 +66,8 @@ void plan_destroy(struct plan *plan); // NULL is fine
 // SHA-256 over every column of every trial and condition, as text: what golden tables and resume compare.
 void plan_hash(const struct plan *plan, char out[SHA256_HEX]);
 
-// For `fovstudy check`. Each returns a heap string to free, NULL: out of memory.
+// For `fovstudy check`. Each returns a heap string to free, NULL: out of memory. The number is printed as
+// people and files have it: counted from 1.
 char *plan_table_text(const struct plan *plan);
 char *plan_table_json(const struct plan *plan);
 // Over participants first..first+count-1: per block and cell how often each scene, side and first-shown option

@@ -17,7 +17,7 @@ char *plan_table_json(const struct plan *plan)
     text_add(
         &text,
         "{\"protocol\":\"%s\",\"sha256\":\"%s\",\"seed\":%llu,\"number\":%u,\"imbalance\":%u,\"conditions\":[",
-        plan->protocol->name, plan->protocol->sha256_hex, (unsigned long long)plan->seed, plan->number,
+        plan->protocol->name, plan->protocol->sha256_hex, (unsigned long long)plan->seed, plan->number + 1,
         plan->imbalance);
     for (uint32_t i = 0; i < plan->condition_count; i++)
         text_add(&text, "%s\n{\"mode\":\"%s\",\"parameters\":%s}", i ? "," : "", plan->conditions[i].mode,
@@ -59,7 +59,7 @@ char *plan_table_text(const struct plan *plan)
 {
     struct text text = {0};
     text_add(&text, "%s, participant number %u, seed %llu, protocol %.12s\n", plan->protocol->name,
-             plan->number, (unsigned long long)plan->seed, plan->protocol->sha256_hex);
+             plan->number + 1, (unsigned long long)plan->seed, plan->protocol->sha256_hex);
     text_add(&text, "\n%5s  %-14s %-7s %-12s %3s %3s %5s %6s  %s\n", "trial", "block", "kind", "scene", "a",
              "b", "test", "first", "factors");
     for (uint32_t i = 0; i < plan->trial_count; i++) {
@@ -160,7 +160,7 @@ char *plan_counts_text(const struct protocol *protocol, uint64_t seed, uint32_t 
 {
     struct counts counts = {0};
     struct text text = {0};
-    text_add(&text, "%u participants from number %u, seed %llu\n\n%-14s %7s %7s %7s %7s", count, first,
+    text_add(&text, "%u participants from number %u, seed %llu\n\n%-14s %7s %7s %7s %7s", count, first + 1,
              (unsigned long long)seed, "block", "trials", "test=a", "test=b", "first");
     for (uint32_t i = 0; i < protocol->scene_count; i++)
         text_add(&text, " %*s", (int)(strlen(protocol->scenes[i]) < 7 ? 7 : strlen(protocol->scenes[i])),

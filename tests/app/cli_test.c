@@ -53,7 +53,6 @@ static void wrong_usage_is_exit_2(void **state)
         {"fovstudy check", "which protocol"},
         {"fovstudy check a.yaml b.yaml", "'b.yaml'"},
         {"fovstudy check a.yaml --number 0", "'0'"},
-        {"fovstudy check a.yaml --participant p", "--db"},
         {"fovstudy run", "which protocol"},
         {"fovstudy run a.yaml", "--db"},
         {"fovstudy run a.yaml --db x.db", "--participant"},

@@ -294,7 +294,7 @@ static void test_tables_and_counts(void **state)
     struct plan *plan = plan_create(protocol, 3, 8);
     char *text = plan_table_text(plan), *json = plan_table_json(plan),
          *counts = plan_counts_json(protocol, 3, 0, 8), *counts_text = plan_counts_text(protocol, 3, 0, 8);
-    assert_non_null(strstr(text, "participant number 8, seed 3"));
+    assert_non_null(strstr(text, "participant number 9, seed 3"));
     uint32_t lines = 0, cells = 0;
     for (const char *at = text; (at = strstr(at, "main ")); at++)
         lines++;
@@ -305,7 +305,7 @@ static void test_tables_and_counts(void **state)
          at++)
         cells++;
     assert_int_equal(cells, 9);
-    assert_non_null(strstr(counts_text, "8 participants from number 0"));
+    assert_non_null(strstr(counts_text, "8 participants from number 1"));
     free(text);
     free(json);
     free(counts);
