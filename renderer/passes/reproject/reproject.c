@@ -76,7 +76,8 @@ void reproject_record(const struct reproject *r, VkCommandBuffer cmd, uint32_t f
                    y = (r->height + SHARED_TILE - 1) / SHARED_TILE;
     gpu_barrier(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
     vkCmdFillBuffer(cmd, r->keys.buffer, 0, VK_WHOLE_SIZE, 0);
-    gpu_barrier(cmd, VK_PIPELINE_STAGE_2_CLEAR_BIT, compute);
+    // whether a fill is a clear or a copy is read both ways; all transfers cover it
+    gpu_barrier(cmd, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, compute);
     gpu_dispatch(cmd, &r->splat, r->splat_sets[from], &drop_deg, sizeof drop_deg, x, y, 2);
     gpu_barrier(cmd, compute, compute);
     gpu_dispatch(cmd, &r->resolve, r->resolve_sets[from], NULL, 0, x, y, 2);
