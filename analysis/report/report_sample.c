@@ -58,6 +58,16 @@ static void fact_version(const struct sample_session *s, char out[512])
     snprintf(out, 512, "%s", s->app_version);
 }
 
+static void fact_scenes(const struct sample_session *s, char out[512])
+{
+    snprintf(out, 512, "%s", s->scenes);
+}
+
+static void fact_observer(const struct sample_session *s, char out[512])
+{
+    snprintf(out, 512, "%s", s->observer);
+}
+
 static void fact_protocol(const struct sample_session *s, char out[512])
 {
     snprintf(out, 512, "%s, SHA-256 %s", s->protocol_name, s->protocol_sha256);
@@ -200,6 +210,9 @@ void report_sample(const struct report *r)
     fact_row(r, "Size", fact_size);
     fact_row(r, "Field of view", fact_fov);
     fact_row(r, "Seed", fact_seed);
+    fact_row(r, "Scenes", fact_scenes);
+    if (r->sample->simulated)
+        fact_row(r, "Observer", fact_observer);
     fact_row(r, "Program", fact_version);
     fputs("</tbody></table></div>\n", r->out);
 }

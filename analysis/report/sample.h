@@ -29,7 +29,8 @@ struct sample_session {
     double refresh_hz, width_px, height_px, fov_deg;     // NaN where nothing was rendered
     bool simulated_clock;
     int64_t segments;
-    bool excluded; // or its participant
+    const char *scenes, *observer; // "" where not known
+    bool excluded;                 // or its participant
 };
 
 struct sample_person {

@@ -41,6 +41,8 @@ struct store_session_row {
     const char *app_version;                         // of the first segment
     bool simulated_clock;                            // of any segment
     int64_t segments;
+    const char *scenes; // the protocol's scenes and what was shown for them: "town: town:triangles=200000", ...
+    const char *observer; // the simulated observer's parameters; "" for a person
 };
 
 // A member of a JSON object: a factor, a parameter, an attribute.

@@ -76,6 +76,8 @@ static bool session_row(sqlite3_stmt *s, const struct call *call)
         .app_version = text(s, 18),
         .simulated_clock = sqlite3_column_int(s, 19),
         .segments = sqlite3_column_int64(s, 20),
+        .scenes = text(s, 21),
+        .observer = text(s, 22),
     };
     return call->session(call->user, &row);
 }
@@ -89,7 +91,11 @@ bool store_read_sessions(struct store_reader *reader, store_session_fn each, voi
         "s.fov_deg,"
         " (SELECT app_version FROM segment WHERE session_id = s.id ORDER BY id LIMIT 1),"
         " (SELECT max(clock = 'simulated') FROM segment WHERE session_id = s.id),"
-        " (SELECT count(*) FROM segment WHERE session_id = s.id)"
+        " (SELECT count(*) FROM segment WHERE session_id = s.id),"
+        " coalesce((SELECT group_concat(key || ': ' || value, ', ') FROM json_each(s.settings, '$.scenes')), "
+        "''),"
+        " coalesce((SELECT group_concat(key || ' ' || printf('%g', value), ', ')"
+        "           FROM json_each(s.settings, '$.observer')), '')"
         " FROM session s JOIN participant p ON p.id = s.participant_id JOIN protocol o ON o.id = s.protocol_id"
         " ORDER BY s.id";
     return read_rows(reader, sql, session_row, &(struct call){.user = user, .session = each});
