@@ -34,6 +34,8 @@ static void need(const struct rig *rig, bool ok, const char *what)
 bool rig_open(struct rig *rig)
 {
     *rig = (struct rig){0};
+    // the layer also checks that every pass waits for what it reads
+    setenv("VK_LAYER_ENABLES", "VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT", 1);
     rig->gpu = gpu_create(&(struct gpu_desc){.log = {hear, rig}, .validation = true});
     if (!rig->gpu) {
         fprintf(stderr, "%s", rig->log);

@@ -1,6 +1,6 @@
-// A device with the validation layer listening, and what a single pass needs around it: two-layer images
-// written and read by the CPU, buffers read back, and the constants of a frame filled from poses in double
-// precision.
+// A device with the validation layer listening (synchronisation too), and what a single pass needs around it:
+// two-layer images written and read by the CPU, buffers read back, and the constants of a frame filled from
+// poses in double precision.
 //
 // Use: rig_open (false: no Vulkan device, exit 77) -> rig_image, rig_upload, rig_frame -> rig_begin ... rig_end
 //      around a pass's record -> rig_read* -> rig_close, which fails the test if the validation layer spoke.
