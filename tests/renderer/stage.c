@@ -20,6 +20,7 @@ static void hear(void *user, enum renderer_log_level level, const char *sentence
 bool stage_open(struct stage *stage, uint32_t width, uint32_t height)
 {
     *stage = (struct stage){.width = width, .height = height};
+    setenv("VK_LAYER_ENABLES", "VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT", 1);
     stage->renderer = renderer_create(
         &(struct renderer_desc){.log = {hear, stage}, .width = width, .height = height, .validation = true});
     if (stage->renderer)

@@ -103,6 +103,7 @@ static bool record(struct mode_state *s, const struct mode_record *record)
     shade_record(&s->shade, gpu_timer_begin(f, "shade"));
     gpu_timer_end(f);
     VkCommandBuffer cmd = gpu_timer_begin(f, "tone map");
+    gpu_barrier(cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
     gpu_image_layout(cmd, &s->colour, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
     tonemap_record(&s->tonemap, cmd, 0);
     gpu_timer_end(f);
