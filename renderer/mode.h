@@ -32,6 +32,9 @@ struct mode {
     uint32_t parameter_count;
     // False with one sentence in `why` where the device lacks what the mode needs. NULL: runs anywhere.
     bool (*supported)(const struct gpu *gpu, char *why, size_t why_size);
+    // False with one sentence in `why` where values that are each in range contradict each other. NULL: none
+    // can.
+    bool (*agree)(const double *values, char *why, size_t why_size);
     struct mode_state *(*create)(const struct mode_setup *setup); // NULL after a logged sentence
     bool (*record)(struct mode_state *state, const struct mode_record *record);
     void (*destroy)(struct mode_state *state); // NULL is fine
@@ -50,6 +53,10 @@ int mode_parameter_index(const struct mode *mode, const char *name); // -1 for a
 
 // Sets one parameter from text; false with a sentence where it is unknown, malformed or out of range.
 bool mode_set(struct mode_choice *choice, const char *name, const char *text, char *error, size_t error_size);
+
+// False with a sentence where parameters contradict each other. mode_parse and renderer_option_create ask it
+// too.
+bool mode_check(const struct mode_choice *choice, char *error, size_t error_size);
 
 // "time_warped:epsilon=0.1,fovea_deg=6"; unnamed parameters take their defaults.
 bool mode_parse(const char *spec, struct mode_choice *out, char *error, size_t error_size);

@@ -91,6 +91,11 @@ bool mode_set(struct mode_choice *choice, const char *name, const char *text, ch
     return true;
 }
 
+bool mode_check(const struct mode_choice *choice, char *error, size_t error_size)
+{
+    return !choice->mode->agree || choice->mode->agree(choice->values, error, error_size);
+}
+
 bool mode_parse(const char *spec, struct mode_choice *out, char *error, size_t error_size)
 {
     char text[512];
@@ -125,7 +130,7 @@ bool mode_parse(const char *spec, struct mode_choice *out, char *error, size_t e
         if (!mode_set(out, pair, value, error, error_size))
             return false;
     }
-    return true;
+    return mode_check(out, error, error_size);
 }
 
 bool mode_parameters_json(const struct mode_choice *choice, char *out, size_t out_size)

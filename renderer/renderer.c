@@ -130,7 +130,8 @@ struct renderer_option *renderer_option_create(struct renderer *r, struct render
                                                const struct mode_choice *choice)
 {
     char why[512];
-    if (choice->mode->supported && !choice->mode->supported(r->gpu, why, sizeof why)) {
+    if ((choice->mode->supported && !choice->mode->supported(r->gpu, why, sizeof why)) ||
+        !mode_check(choice, why, sizeof why)) {
         relay(r, RENDERER_ERROR, why);
         return NULL;
     }

@@ -1,7 +1,9 @@
 #include "app/fovstudy/catalogue.h"
 
+#include "app/session/stage.h"
 #include "renderer/mode.h"
 #include "stimuli/builtin/builtin.h"
+#include "studies/engine/plan.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -107,4 +109,32 @@ void study_names_finish(struct study_names *names)
     free(names->parameters);
     free(names->scenes);
     *names = (struct study_names){0};
+}
+
+// The conditions are the same for every participant, so the first one's plan names them all.
+static bool conditions_agree(const struct protocol *protocol, char *error, size_t error_size)
+{
+    struct plan *plan = plan_create(protocol, protocol->seed, 0);
+    if (!plan) {
+        snprintf(error, error_size, "out of memory");
+        return false;
+    }
+    bool ok = true;
+    for (uint32_t i = 0; i < plan->condition_count && ok; i++) {
+        struct mode_choice choice;
+        ok = stage_choice(&plan->conditions[i], &choice) && mode_check(&choice, error, error_size);
+    }
+    plan_destroy(plan);
+    return ok;
+}
+
+struct protocol *study_load(const char *path, const struct study_names *names, char *error, size_t error_size)
+{
+    char why[512];
+    struct protocol *protocol = protocol_load(path, &names->catalogue, error, error_size);
+    if (!protocol || conditions_agree(protocol, why, sizeof why))
+        return protocol;
+    snprintf(error, error_size, "%s: %s", path, why);
+    protocol_destroy(protocol);
+    return NULL;
 }

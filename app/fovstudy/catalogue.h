@@ -6,6 +6,7 @@
 #define APP_FOVSTUDY_CATALOGUE_H
 
 #include "studies/protocol/catalogue.h"
+#include "studies/protocol/protocol.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -37,5 +38,8 @@ const char *study_scene_spec(const struct bound_scene *bound, size_t count, cons
 bool study_names_init(struct study_names *names, const struct bound_scene *bound,
                       size_t count); // false: no memory
 void study_names_finish(struct study_names *names);
+
+// Reads a protocol and asks the modes whether the parameters of every condition agree. NULL after a sentence.
+struct protocol *study_load(const char *path, const struct study_names *names, char *error, size_t error_size);
 
 #endif

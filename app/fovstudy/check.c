@@ -134,7 +134,7 @@ int command_check(int argc, char **argv)
         fprintf(stderr, "fovstudy: out of memory\n");
         return EXIT_FAILED;
     }
-    struct protocol *protocol = protocol_load(request.protocol, &names.catalogue, error, sizeof error);
+    struct protocol *protocol = study_load(request.protocol, &names, error, sizeof error);
     status = EXIT_FAILED;
     if (!protocol)
         fprintf(stderr, "fovstudy: %s\n", error);

@@ -145,6 +145,9 @@ static void protocol_mistakes_have_their_place(void **state)
                 folder, folder),
             1, cases[i].about);
     }
+    // each in its range, but not together
+    write_protocol("wrong.yaml", "{mode: time_warped}", "{mode: time_warped, fovea_deg: 30}");
+    expect(command("fovstudy check '%s/wrong.yaml'", folder), 1, "it must be more than fovea_deg, 30");
     expect(command("fovstudy check '%s/no-such.yaml'", folder), 1, "no-such.yaml");
     char path[600];
     snprintf(path, sizeof path, "%s/never.db", folder);

@@ -42,6 +42,8 @@ static void bad_words_get_a_sentence(void **state)
         {"time_warped:eps=1", "has no parameter 'eps'; it has: epsilon, fovea_deg"},
         {"time_warped:epsilon=2", "goes from 0 to 1"},
         {"time_warped:fovea_deg=91", "goes from 0 to 90 deg"},
+        {"time_warped:fovea_deg=30",
+         "periphery_deg of mode 'time_warped' is 30; it must be more than fovea_deg, 30"},
         {"time_warped:epsilon=", "is not a number: ''"},
         {"time_warped:epsilon=0.1x", "is not a number: '0.1x'"},
         {"time_warped:epsilon=nan", "is not a number"},

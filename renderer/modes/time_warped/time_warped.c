@@ -67,6 +67,15 @@ static bool supported(const struct gpu *gpu, char *why, size_t why_size)
     return false;
 }
 
+static bool agree(const double *values, char *why, size_t why_size)
+{
+    if (values[PERIPHERY_DEG] > values[FOVEA_DEG])
+        return true;
+    snprintf(why, why_size, "periphery_deg of mode 'time_warped' is %g; it must be more than fovea_deg, %g",
+             values[PERIPHERY_DEG], values[FOVEA_DEG]);
+    return false;
+}
+
 static void destroy(struct mode_state *s)
 {
     if (!s)
@@ -285,6 +294,7 @@ const struct mode mode_time_warped = {
     .parameters = parameters,
     .parameter_count = countof(parameters),
     .supported = supported,
+    .agree = agree,
     .create = create,
     .record = record,
     .destroy = destroy,
