@@ -12,12 +12,13 @@ struct frame_eye {
     struct pose pose;       // world
     struct viewing_fov fov; // may be asymmetric
     double gaze_x_deg,
-        gaze_y_deg; // what the fovea follows, this eye's frame (viewing.h); not finite: see frame.h below
+        gaze_y_deg; // what the fovea follows, this eye's frame (viewing.h); not finite: see below
 };
 
 // A gaze that is not a number means no valid gaze: a foveated mode then treats every pixel as foveal.
 struct frame {
-    uint64_t number;    // counts up by one per frame of a run; seeds per-frame random choices
+    uint64_t number;    // counts up by one per frame of a run; a gap forgets earlier frames
+    bool moving;        // objects move; false: they stand still at animation_s and count as static
     double animation_s; // scene time for moving objects
     struct frame_eye eyes[EYES];
     bool cut; // camera cut: nothing from earlier frames may be used

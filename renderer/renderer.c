@@ -38,6 +38,7 @@ struct renderer_option {
     bool drawn;
     uint64_t last_number;
     double last_animation_s;
+    bool last_moving;
     struct dvec3 last_origin;
 };
 
@@ -227,15 +228,14 @@ static void fill_eye(struct shared_eye *out, const struct frame_eye *eye, struct
     fill_planes(out, eye, dvec3_sub(eye->pose.position, origin));
 }
 
-static void fill_constants(struct renderer_option *o, const struct frame *frame, bool history)
+static void fill_constants(struct renderer_option *o, const struct frame *frame)
 {
     const struct scene_gpu *scene = o->scene->gpu;
     struct shared_frame *out = o->constants.mapped;
     *out = (struct shared_frame){.width = o->renderer->width,
                                  .height = o->renderer->height,
                                  .near_m = (float)VIEWING_NEAR_M,
-                                 .number = (uint32_t)frame->number,
-                                 .history = history};
+                                 .moving = frame->moving};
     scene_gpu_constants(scene, out);
     for (int eye = 0; eye < EYES; eye++)
         fill_eye(&out->eyes[eye], &frame->eyes[eye], scene->origin);
@@ -288,12 +288,13 @@ bool renderer_draw(struct renderer_option *o, const struct frame *frame, struct 
         return false;
     }
     const double start = now_ms();
-    const bool history = o->drawn && !frame->cut && frame->number == o->last_number + 1;
+    const bool history =
+        o->drawn && !frame->cut && frame->number == o->last_number + 1 && frame->moving == o->last_moving;
     if (!gpu_frame_begin(&r->frame))
         return false;
     scene_gpu_update(o->scene->gpu, r->frame.cmd, frame->eyes[EYE_LEFT].pose.position, frame->animation_s,
                      history ? o->last_animation_s : frame->animation_s);
-    fill_constants(o, frame, history);
+    fill_constants(o, frame);
     memset(o->counters.mapped, 0, sizeof(struct shared_counters));
     const struct mode_record record = {.gpu_frame = &r->frame, .history = history, .result = &o->result};
     if (!o->mode->record(o->state, &record))
@@ -304,6 +305,7 @@ bool renderer_draw(struct renderer_option *o, const struct frame *frame, struct 
     o->drawn = true;
     o->last_number = frame->number;
     o->last_animation_s = frame->animation_s;
+    o->last_moving = frame->moving;
     o->last_origin = o->scene->gpu->origin;
     if (out_stats)
         fill_stats(o, history, recorded - start, out_stats);
@@ -328,11 +330,10 @@ bool renderer_show(struct renderer *r, struct renderer_option *option, double fa
     return gpu_frame_end(&r->frame) && (!r->present || gpu_present_show(r->present, &r->screen.image));
 }
 
-bool renderer_resized(struct renderer *r)
+void renderer_resized(struct renderer *r)
 {
     if (r->present)
         gpu_present_resized(r->present);
-    return true;
 }
 
 // Copies a rectangle of one layer to the CPU.

@@ -62,7 +62,8 @@ uint64_t renderer_option_memory(const struct renderer_option *option); // bytes 
 // What was built, why, and its memory, one line each; false: too small.
 bool renderer_option_explain(const struct renderer_option *option, char *out, size_t out_size);
 
-// Draws one frame and waits for it. A gap in frame.number, or frame.cut, resets the option's history.
+// Draws one frame and waits for it. A gap in frame.number, frame.cut, or a change of frame.moving resets the
+// option's history.
 bool renderer_draw(struct renderer_option *option, const struct frame *frame, struct frame_stats *out_stats);
 
 // An image laid over both eyes, e.g. text: rgba8, sRGB-encoded, straight alpha. Copied by renderer_set_overlay.
@@ -78,7 +79,7 @@ bool renderer_set_overlay(struct renderer *renderer, const struct renderer_overl
 // 1 gray; then the overlay. option NULL: gray. With a surface this presents and waits for the display's pace;
 // without, the result only lies ready for renderer_read_screen.
 bool renderer_show(struct renderer *renderer, struct renderer_option *option, double fade);
-bool renderer_resized(struct renderer *renderer); // the surface changed size; the next show rebuilds its images
+void renderer_resized(struct renderer *renderer); // the surface changed size; the next show rebuilds its images
 
 // The option's last frame before fade and overlay: rgba8, sRGB-encoded, width * height * 4 bytes per eye.
 bool renderer_read(struct renderer_option *option, int eye, uint8_t *out_rgba);

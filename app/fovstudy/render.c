@@ -199,7 +199,7 @@ static void make_frame(const struct request *r, const struct scene *scene, uint6
     double x_deg = r->gaze_x_deg, y_deg = r->gaze_y_deg;
     if (r->gaze == GAZE_SCRIPT)
         gaze_script(1, time_s, &x_deg, &y_deg);
-    *out = (struct frame){.number = number, .animation_s = r->rest ? 0 : time_s};
+    *out = (struct frame){.number = number, .moving = !r->rest, .animation_s = r->rest ? 0 : time_s};
     for (int eye = 0; eye < EYES; eye++)
         out->eyes[eye] = (struct frame_eye){.pose = viewing_eye_pose(&head, eye, VIEWING_DEFAULT_IPD_M),
                                             .fov = viewing_symmetric_fov(r->fov_deg, r->width, r->height),

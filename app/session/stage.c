@@ -181,6 +181,7 @@ struct frame stage_frame(const struct stage *stage, const struct machine_view *v
         camera_path_pose(&stage->scene->scene->path, settings->camera == PROTOCOL_CAMERA_STILL ? 0.0 : time_s);
     struct frame frame = {
         .number = number,
+        .moving = moving >= 0 && settings->render[moving] > 0.5,
         .animation_s = moving >= 0 && settings->render[moving] > 0.5 ? time_s : 0.0,
         .cut = view->trial_started,
     };

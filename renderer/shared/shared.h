@@ -52,8 +52,7 @@ struct shared_frame {
     SHARED_UINT item_count;
     SHARED_FLOAT near_m;
     SHARED_FLOAT exposure; // 0.18 / luminance
-    SHARED_UINT number;
-    SHARED_UINT history; // 0: nothing from earlier frames may be used
+    SHARED_UINT moving;    // 0: moving ids are ignored, objects stand still
 };
 
 // A submodel of one instance: what is culled and drawn.
@@ -117,7 +116,6 @@ struct shared_counters {
     SHARED_UINT shaded_px;
     SHARED_UINT triangles;
     SHARED_UINT submodels;
-    SHARED_UINT reserved;
 };
 
 #ifndef GL_core_profile

@@ -284,6 +284,46 @@ static void ten_kilometres_out_looks_the_same(void **state)
     scene_destroy(far_scene);
 }
 
+// Objects that stand still cost what the static scene costs; moving ones lose trust with age and are drawn
+// anew, so that they are where `regular` has them.
+static void moving_objects_are_followed_and_resting_ones_trusted(void **state)
+{
+    struct pair *p = *state;
+    char error[512];
+    struct scene *town = scene_open("town:triangles=60000", error, sizeof error);
+    struct renderer_scene *uploaded = renderer_scene_create(p->stage.renderer, town);
+    struct renderer_option *regular = stage_option(&p->stage, uploaded, "regular");
+    uint64_t most[2] = {0, 0}, least[2] = {UINT64_MAX, UINT64_MAX};
+    for (int moving = 0; moving < 2; moving++) {
+        struct renderer_option *warped = stage_option(&p->stage, uploaded, "time_warped");
+        for (uint64_t n = 0; n < 12; n++) {
+            struct frame_stats stats;
+            struct frame frame = stage_frame(&p->stage, town, n, 4, 0, 0);
+            frame.moving = moving;
+            frame.animation_s = moving ? 4 * step_s * (double)n : 0;
+            draw(warped, &frame, &stats);
+            draw(regular, &frame, NULL);
+            if (n > 0) {
+                most[moving] = stats.shaded_px > most[moving] ? stats.shaded_px : most[moving];
+                least[moving] = stats.shaded_px < least[moving] ? stats.shaded_px : least[moving];
+            }
+            if (!moving)
+                assert_int_equal(difference(p, warped, regular).max, 0);
+        }
+        struct stage_difference d = difference(p, warped, regular);
+        print_message("objects %s: %llu to %llu px shaded, mean difference %.3f\n",
+                      moving ? "moving" : "at rest", (unsigned long long)least[moving],
+                      (unsigned long long)most[moving], d.mean);
+        assert_true(d.mean < 0.5);
+        renderer_option_destroy(warped);
+    }
+    assert_int_equal(least[0], most[0]);
+    assert_true(most[1] > most[0]);
+    renderer_option_destroy(regular);
+    renderer_scene_destroy(uploaded);
+    scene_destroy(town);
+}
+
 static void a_bad_frame_is_refused(void **state)
 {
     struct pair *p = *state;
@@ -352,6 +392,7 @@ int main(void)
         cmocka_unit_test(a_cut_and_a_gap_forget_the_past),
         cmocka_unit_test(half_a_frustum_draws_half_the_picture),
         cmocka_unit_test(ten_kilometres_out_looks_the_same),
+        cmocka_unit_test(moving_objects_are_followed_and_resting_ones_trusted),
         cmocka_unit_test(a_bad_frame_is_refused),
         cmocka_unit_test(the_screen_fades_to_gray_and_carries_the_overlay),
     };

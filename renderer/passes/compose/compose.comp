@@ -27,7 +27,8 @@ void main()
     if (depth > 0.0) {
         position = vec4(world_from_eye[3].xyz + direction * (frame.near_m / depth), 1.0);
 #ifdef ID
-        position.w += float(texelFetch(id_image, pixel, 0).x);
+        if (frame.moving != 0u)
+            position.w += float(texelFetch(id_image, pixel, 0).x);
 #endif
     }
     imageStore(position_image, pixel, position);

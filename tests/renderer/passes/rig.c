@@ -256,7 +256,7 @@ void rig_frame(struct rig *rig, const struct rig_view *view)
 {
     struct shared_frame *out = rig->frame.mapped;
     *out = (struct shared_frame){
-        .width = view->width, .height = view->height, .near_m = (float)VIEWING_NEAR_M, .history = 1};
+        .width = view->width, .height = view->height, .near_m = (float)VIEWING_NEAR_M, .moving = 1};
     for (int eye = 0; eye < EYES; eye++)
         fill_eye(&out->eyes[eye], &view->eyes[eye], view->origin);
     store(out->origin_shift, dvec3_sub(view->last_origin, view->origin), 0);

@@ -52,6 +52,7 @@ static struct frame frame_at(const struct room *r, uint64_t number, double size_
     const double phase = 2 * 3.14159265358979 * (double)(number % LOOP) / LOOP;
     const double half = 0.5 * turn_rad * sin(phase);
     const struct dquat yaw = {0, sin(half), 0, cos(half)};
+    frame.moving = size_m > 0;
     frame.animation_s = size_m > 0 ? 0.5 - 0.5 * cos(phase) : 0; // there and back
     struct pose head = camera_path_pose(&r->scene->path, 3);
     head.position = dvec3_add(head.position, (struct dvec3){size_m * cos(phase), 0.3 * size_m * sin(2 * phase),
