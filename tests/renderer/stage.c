@@ -19,10 +19,15 @@ static void hear(void *user, enum renderer_log_level level, const char *sentence
 
 bool stage_open(struct stage *stage, uint32_t width, uint32_t height)
 {
+    return stage_open_timed(stage, width, height, false);
+}
+
+bool stage_open_timed(struct stage *stage, uint32_t width, uint32_t height, bool pass_times)
+{
     *stage = (struct stage){.width = width, .height = height};
     setenv("VK_LAYER_ENABLES", "VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT", 1);
-    stage->renderer = renderer_create(
-        &(struct renderer_desc){.log = {hear, stage}, .width = width, .height = height, .validation = true});
+    stage->renderer = renderer_create(&(struct renderer_desc){
+        .log = {hear, stage}, .width = width, .height = height, .validation = true, .pass_times = pass_times});
     if (stage->renderer)
         return true;
     if (strstr(stage->log, "no Vulkan"))

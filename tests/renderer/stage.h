@@ -10,8 +10,9 @@ struct stage {
     char log[4096]; // every sentence so far
 };
 
-// False where there is no Vulkan device: the test exits with 77.
+// False where there is no Vulkan device: the test exits with 77. pass_times: one submission per pass.
 bool stage_open(struct stage *stage, uint32_t width, uint32_t height);
+bool stage_open_timed(struct stage *stage, uint32_t width, uint32_t height, bool pass_times);
 // Fails the test if the validation layer said anything.
 void stage_close(struct stage *stage);
 

@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include <cmocka.h>
 
@@ -324,6 +325,61 @@ static void moving_objects_are_followed_and_resting_ones_trusted(void **state)
     scene_destroy(town);
 }
 
+static double wall_ms(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
+}
+
+static double pass_ms(const struct frame_stats *stats, const char *name)
+{
+    for (uint32_t i = 0; i < stats->timer_count; i++) {
+        if (strcmp(stats->timers[i].name, name) == 0)
+            return stats->timers[i].ms;
+    }
+    fail_msg("no pass is named '%s'", name);
+    return 0;
+}
+
+// With one submission per pass the passes' times add up to what the caller waited for, and a compute pass after
+// the G-buffer is not charged for it: of two sizes of the same view, the one with 16 times the pixels shades
+// for longer by far more than it draws the same triangles for longer.
+static void timers_tell_the_passes_apart(void **state)
+{
+    (void)state;
+    char error[512];
+    double shade[2] = {1e9, 1e9}, draw_ms[2] = {1e9, 1e9};
+    struct scene *scene = scene_open("town:triangles=60000", error, sizeof error);
+    for (int large = 0; large < 2; large++) {
+        struct stage stage;
+        assert_true(stage_open_timed(&stage, large ? 512 : 128, large ? 512 : 128, true));
+        struct renderer_scene *uploaded = renderer_scene_create(stage.renderer, scene);
+        struct renderer_option *regular = stage_option(&stage, uploaded, "regular");
+        for (uint64_t n = 0; n < 5; n++) {
+            struct frame_stats stats;
+            struct frame frame = stage_frame(&stage, scene, n, 4, 0, 0);
+            double sum = 0, start = wall_ms();
+            draw(regular, &frame, &stats);
+            double waited = wall_ms() - start;
+            for (uint32_t i = 0; i < stats.timer_count; i++)
+                sum += stats.timers[i].ms;
+            assert_true(fabs(sum - stats.gpu_ms) < 1e-6 * sum);
+            assert_true(sum <= waited);
+            shade[large] = fmin(shade[large], pass_ms(&stats, "shade")); // the least disturbed of five
+            draw_ms[large] = fmin(draw_ms[large], pass_ms(&stats, "g-buffer"));
+        }
+        renderer_option_destroy(regular);
+        renderer_scene_destroy(uploaded);
+        stage_close(&stage);
+    }
+    print_message("shade %.2f and %.2f ms, g-buffer %.2f and %.2f ms\n", shade[0], shade[1], draw_ms[0],
+                  draw_ms[1]);
+    assert_true(shade[1] / shade[0] > 4);
+    assert_true(shade[1] / shade[0] > draw_ms[1] / draw_ms[0]);
+    scene_destroy(scene);
+}
+
 static void a_bad_frame_is_refused(void **state)
 {
     struct pair *p = *state;
@@ -393,6 +449,7 @@ int main(void)
         cmocka_unit_test(half_a_frustum_draws_half_the_picture),
         cmocka_unit_test(ten_kilometres_out_looks_the_same),
         cmocka_unit_test(moving_objects_are_followed_and_resting_ones_trusted),
+        cmocka_unit_test(timers_tell_the_passes_apart),
         cmocka_unit_test(a_bad_frame_is_refused),
         cmocka_unit_test(the_screen_fades_to_gray_and_carries_the_overlay),
     };
