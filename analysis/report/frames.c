@@ -69,6 +69,7 @@ static bool add_frame(void *user, const struct store_frame_row *row)
     }
     f->frames->frames++;
     f->frames->late += row->late;
+    f->frames->late_unknown += !row->late_known;
     f->frames->simulated_clock = f->frames->simulated_clock || row->simulated_clock;
     return add_time(&group->gpu, row->gpu_us / 1e3) && add_time(&group->cpu, row->cpu_us / 1e3) &&
            add_time(&group->interval, interval);

@@ -29,6 +29,7 @@ struct frames {
     size_t group_count;
     struct frame_group *groups; // stimulus first, then by label: words rising, numbers falling
     int64_t frames, late;
+    int64_t late_unknown; // frames whose display told no refresh rate
     bool simulated_clock; // of any frame
 };
 

@@ -48,6 +48,11 @@ void report_frames(const struct report *r)
     fputs("<p>", out);
     html_printf(out, "%" PRId64 " frames, %" PRId64 " of them late (%.2f\u00a0%%).", f->frames, f->late,
                 100 * (double)f->late / (double)f->frames);
+    if (f->late_unknown)
+        html_printf(out,
+                    " Of %" PRId64
+                    " frames it is not known whether they were late: the display told no refresh rate.",
+                    f->late_unknown);
     if (f->simulated_clock)
         fputs(" The clock was simulated: intervals and late frames are that clock\u2019s and say nothing of "
               "the machine.",
@@ -64,7 +69,7 @@ void report_frames(const struct report *r)
           "scope=\"col\">GPU "
           "median</th><th scope=\"col\">p95</th><th scope=\"col\">p99</th><th scope=\"col\">CPU median</th>"
           "<th scope=\"col\">p95</th><th scope=\"col\">p99</th><th scope=\"col\">interval median</th>"
-          "<th scope=\"col\">pixels shaded, M</th></tr></thead>\n<tbody>\n",
+          "<th scope=\"col\">pixels shaded, mean</th></tr></thead>\n<tbody>\n",
           out);
     for (size_t i = 0; i < f->group_count; i++)
         group_row(r, &f->groups[i]);

@@ -7,7 +7,7 @@
 #include <string.h>
 
 struct session_quality {
-    int64_t planned, done, invalid, samples, lost;
+    int64_t planned, done, invalid, samples, lost, frames, lost_frames;
 };
 
 struct filling {
@@ -36,6 +36,8 @@ static bool add_gaze(void *user, const struct store_gaze_row *row)
         return true;
     f->sessions[i].samples = row->samples;
     f->sessions[i].lost = row->invalid;
+    f->sessions[i].frames = row->stimulus_frames;
+    f->sessions[i].lost_frames = row->lost_frames;
     return true;
 }
 
@@ -55,7 +57,31 @@ static void session_row(const struct report *r, size_t index, const struct sessi
                   100 * (double)q->lost / (double)q->samples);
     else
         html_cell(out, "td", "none");
+    if (q->frames)
+        html_cell(out, "td", "%" PRId64 " of %" PRId64, q->lost_frames, q->frames);
+    else
+        html_cell(out, "td", "\u2013");
     fputs("</tr>\n", out);
+}
+
+// A fovea without a gaze is not what the condition says: at first every pixel counts as foveal, later it stands
+// still.
+static void lost_note(const struct report *r, const struct session_quality *sessions)
+{
+    int64_t frames = 0, lost = 0;
+    for (size_t i = 0; i < r->sample->session_count; i++) {
+        if (!r->sample->sessions[i].excluded) {
+            frames += sessions[i].frames;
+            lost += sessions[i].lost_frames;
+        }
+    }
+    if (lost)
+        fprintf(r->out,
+                "<p class=\"note\">In %" PRId64 " of %" PRId64
+                " stimulus frames the gaze was lost for more than half a second or not known yet: there a "
+                "foveated option "
+                "was not what its condition says, and choices between them say less.</p>\n",
+                lost, frames);
 }
 
 static bool sessions_table(const struct report *r, char *error, size_t error_size)
@@ -79,12 +105,13 @@ static bool sessions_table(const struct report *r, char *error, size_t error_siz
               "status</th><th scope=\"col\" class=\"word\">started</th><th scope=\"col\">program runs</th>"
               "<th scope=\"col\">trials done</th><th scope=\"col\">invalid</th><th scope=\"col\">gaze samples "
               "(not valid)"
-              "</th></tr></thead>\n<tbody>\n",
+              "</th><th scope=\"col\">stimulus frames without gaze</th></tr></thead>\n<tbody>\n",
               r->out);
         for (size_t i = 0; i < s->session_count; i++)
             if (!s->sessions[i].excluded)
                 session_row(r, i, &f.sessions[i]);
         fputs("</tbody></table></div>\n", r->out);
+        lost_note(r, f.sessions);
     }
     free(f.sessions);
     return ok;

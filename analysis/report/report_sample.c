@@ -113,6 +113,37 @@ static void fact_row(const struct report *r, const char *name, fact_fn fact)
     fputs("</td></tr>\n", r->out);
 }
 
+// Cells pool sessions; where those differ in what was shown, the reader must know.
+static void differing_note(const struct report *r)
+{
+    static const struct {
+        const char *name;
+        fact_fn fact;
+        bool drawn;
+    } facts[] = {
+        {"protocol text", fact_protocol, false}, {"scenes", fact_scenes, false}, {"size", fact_size, true},
+        {"field of view", fact_fov, true},       {"rate", fact_rate, true},      {"device", fact_device, true}};
+    const struct sample *sample = r->sample;
+    char list[256] = "", first[512], value[512];
+    for (size_t k = 0; k < sizeof facts / sizeof facts[0]; k++) {
+        bool known = false, differs = false;
+        for (size_t i = 0; i < sample->session_count; i++) {
+            const struct sample_session *s = &sample->sessions[i];
+            if (s->excluded || (facts[k].drawn && !s->device[0])) // nothing was drawn without a device
+                continue;
+            facts[k].fact(s, known ? value : first);
+            differs = differs || (known && strcmp(first, value) != 0);
+            known = true;
+        }
+        if (differs)
+            snprintf(list + strlen(list), sizeof list - strlen(list), "%s%s", list[0] ? ", " : "",
+                     facts[k].name);
+    }
+    if (list[0])
+        html_printf(r->out, "<p class=\"note\">The sessions differ in: %s. The numbers below pool them.</p>\n",
+                    list);
+}
+
 static bool person_used(const struct sample *sample, size_t person)
 {
     for (size_t i = 0; i < sample->session_count; i++)
@@ -215,6 +246,7 @@ void report_sample(const struct report *r)
         fact_row(r, "Observer", fact_observer);
     fact_row(r, "Program", fact_version);
     fputs("</tbody></table></div>\n", r->out);
+    differing_note(r);
 }
 
 static void methods_choices(const struct report *r)

@@ -47,6 +47,10 @@ static bool print_text(const struct sample *sample, const struct frames *f)
     bool ok = table_print(&t, stdout);
     table_finish(&t);
     printf("\nMilliseconds. Late: %" PRId64 " of %" PRId64 " frames.\n", f->late, f->frames);
+    if (f->late_unknown)
+        printf("Of %" PRId64
+               " frames it is not known whether they were late: the display told no refresh rate.\n",
+               f->late_unknown);
     if (f->simulated_clock)
         puts("The clock was simulated: intervals and late frames are that clock's and say nothing of the "
              "machine.");

@@ -128,11 +128,34 @@ static bool conditions_agree(const struct protocol *protocol, char *error, size_
     return ok;
 }
 
-struct protocol *study_load(const char *path, const struct study_names *names, char *error, size_t error_size)
+// A misspelt binding would leave the built-in scene in place without a word.
+static bool bindings_known(const struct protocol *protocol, const struct bound_scene *bound, size_t count,
+                           char *error, size_t error_size)
+{
+    for (size_t b = 0; b < count; b++) {
+        uint32_t i = 0;
+        while (i < protocol->scene_count && strcmp(protocol->scenes[i], bound[b].name) != 0)
+            i++;
+        if (i < protocol->scene_count)
+            continue;
+        snprintf(error, error_size,
+                 "--scene binds '%s', which is no scene of this protocol; it has: ", bound[b].name);
+        for (i = 0; i < protocol->scene_count; i++) {
+            size_t used = strlen(error);
+            snprintf(error + used, error_size - used, "%s%s", i ? ", " : "", protocol->scenes[i]);
+        }
+        return false;
+    }
+    return true;
+}
+
+struct protocol *study_load(const char *path, const struct study_names *names, const struct bound_scene *bound,
+                            size_t count, char *error, size_t error_size)
 {
     char why[512];
     struct protocol *protocol = protocol_load(path, &names->catalogue, error, error_size);
-    if (!protocol || conditions_agree(protocol, why, sizeof why))
+    if (!protocol || (conditions_agree(protocol, why, sizeof why) &&
+                      bindings_known(protocol, bound, count, why, sizeof why)))
         return protocol;
     snprintf(error, error_size, "%s: %s", path, why);
     protocol_destroy(protocol);

@@ -39,7 +39,9 @@ bool study_names_init(struct study_names *names, const struct bound_scene *bound
                       size_t count); // false: no memory
 void study_names_finish(struct study_names *names);
 
-// Reads a protocol and asks the modes whether the parameters of every condition agree. NULL after a sentence.
-struct protocol *study_load(const char *path, const struct study_names *names, char *error, size_t error_size);
+// Reads a protocol; asks the modes whether the parameters of every condition agree, and the protocol whether it
+// has every scene that is bound. NULL after a sentence.
+struct protocol *study_load(const char *path, const struct study_names *names, const struct bound_scene *bound,
+                            size_t count, char *error, size_t error_size);
 
 #endif

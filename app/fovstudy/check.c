@@ -94,6 +94,10 @@ static int read_request(struct request *out, int argc, char **argv)
 static bool look_up(struct request *request)
 {
     char error[STORE_ERROR_SIZE];
+    if (request->participant && !request->database && !request->has_number)
+        fprintf(stderr,
+                "fovstudy: without --db nothing is known of %s; these are the first participant's trials\n",
+                request->participant);
     if (!request->participant || !request->database || request->has_number)
         return true;
     bool found = check_number(request->database, request->participant, &request->number, error, sizeof error);
@@ -134,7 +138,8 @@ int command_check(int argc, char **argv)
         fprintf(stderr, "fovstudy: out of memory\n");
         return EXIT_FAILED;
     }
-    struct protocol *protocol = study_load(request.protocol, &names, error, sizeof error);
+    struct protocol *protocol =
+        study_load(request.protocol, &names, request.scenes, request.scene_count, error, sizeof error);
     status = EXIT_FAILED;
     if (!protocol)
         fprintf(stderr, "fovstudy: %s\n", error);

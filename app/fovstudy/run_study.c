@@ -64,7 +64,8 @@ bool run_study_init(struct run_study *study, const struct run_options *options, 
         snprintf(error, error_size, "out of memory");
         return false;
     }
-    study->protocol = study_load(options->protocol, &study->names, error, error_size);
+    study->protocol =
+        study_load(options->protocol, &study->names, options->scenes, options->scene_count, error, error_size);
     if (!study->protocol || !read_attributes(study, options, error, error_size))
         return false;
     observer_defaults(&study->observer);

@@ -58,7 +58,7 @@ static bool open_scenes(struct run_view *view, const struct run_options *options
             return false;
         if (scene->notes[0])
             fprintf(stderr, "fovstudy: %s\n", scene->notes);
-        view->scenes[view->scene_count++] = (struct stage_scene){.name = name, .scene = scene};
+        view->scenes[view->scene_count++] = (struct stage_scene){.name = name, .spec = spec, .scene = scene};
     }
     return true;
 }

@@ -107,7 +107,8 @@ static double from_table(const struct table *table, const struct plan_condition 
 }
 
 static bool find(const struct plan *plan, struct store *store, const struct store_error_key *key,
-                 int32_t condition, const struct table *table, double *out, char *error, size_t error_size)
+                 int32_t condition, const char *scene, const struct table *table, double *out, char *error,
+                 size_t error_size)
 {
     struct store_error why;
     *out = NAN;
@@ -118,7 +119,7 @@ static bool find(const struct plan *plan, struct store *store, const struct stor
         return false;
     }
     if (isnan(*out))
-        *out = from_table(table, &plan->conditions[condition], key->scene);
+        *out = from_table(table, &plan->conditions[condition], scene);
     if (!isnan(*out))
         return true;
     snprintf(error, error_size,
@@ -129,9 +130,17 @@ static bool find(const struct plan *plan, struct store *store, const struct stor
     return false;
 }
 
+static const char *spec_of(const struct plan *plan, const char *const *specs, const char *scene)
+{
+    uint32_t i = 0;
+    while (strcmp(plan->protocol->scenes[i], scene) != 0)
+        i++;
+    return specs[i];
+}
+
 bool errors_init(struct errors *errors, const struct plan *plan, struct store *store,
-                 const int64_t *condition_ids, int64_t reference_id, const char *file, char *error,
-                 size_t error_size)
+                 const int64_t *condition_ids, int64_t reference_id, const char *const *specs, const char *file,
+                 char *error, size_t error_size)
 {
     struct table table;
     *errors =
@@ -144,10 +153,10 @@ bool errors_init(struct errors *errors, const struct plan *plan, struct store *s
                 continue;
             struct store_error_key key = {.condition_id = condition_ids[condition],
                                           .reference_id = reference_id,
-                                          .scene = plan->trials[t].scene,
+                                          .scene = spec_of(plan, specs, plan->trials[t].scene),
                                           .metric = MEASURE_METRIC};
-            good = find(plan, store, &key, condition, &table, &errors->slots[2 * t + (uint32_t)slot], error,
-                        error_size);
+            good = find(plan, store, &key, condition, plan->trials[t].scene, &table,
+                        &errors->slots[2 * t + (uint32_t)slot], error, error_size);
         }
     }
     if (errors->slots)

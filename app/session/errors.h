@@ -19,11 +19,12 @@ struct errors {
     double *slots;           // [trial][2]; owned
 };
 
-// Reads what every trial of the plan needs; `file` "" for none. condition_ids and reference_id as in the store.
-// False with a sentence that names the first option without an error.
+// Reads what every trial of the plan needs; `file` "" for none. condition_ids and reference_id as in the store;
+// specs say what is shown for each of the protocol's scenes, in its order: the store keeps errors by that, a
+// file by name. False with a sentence that names the first option without an error.
 bool errors_init(struct errors *errors, const struct plan *plan, struct store *store,
-                 const int64_t *condition_ids, int64_t reference_id, const char *file, char *error,
-                 size_t error_size);
+                 const int64_t *condition_ids, int64_t reference_id, const char *const *specs, const char *file,
+                 char *error, size_t error_size);
 void errors_finish(struct errors *errors);
 struct observer_errors errors_of(const struct errors *errors, uint32_t trial);
 

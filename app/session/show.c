@@ -75,7 +75,8 @@ bool show_store_errors(const struct show *show, uint32_t trial, char *error, siz
     for (int slot = 0; show->measure && slot < 2; slot++) {
         double value = option_error(show, trial, slot);
         if (planned->option[slot] >= 0 && !isnan(value) &&
-            !store_error_of(show, (uint32_t)planned->option[slot], planned->scene, value, error, error_size))
+            !store_error_of(show, (uint32_t)planned->option[slot],
+                            show->desc->scenes[scene_index(show, trial)].spec, value, error, error_size))
             return false;
     }
     return true;
@@ -94,7 +95,7 @@ bool show_measure_rest(struct show *show, char *error, size_t error_size)
                     return false;
                 value = measure_error(show->measure, condition, scene);
             }
-            if (!store_error_of(show, condition, desc->scenes[scene].name, value, error, error_size))
+            if (!store_error_of(show, condition, desc->scenes[scene].spec, value, error, error_size))
                 return false;
         }
     }
@@ -120,6 +121,9 @@ static void fill_fovea(const struct fovea_use *use, enum store_fovea source, str
         row->fovea_deg[eye][1] = use->y_deg[eye];
     }
     row->fovea_source = source;
+    // No gaze yet: every pixel counts as foveal, and a foveated option is not what its condition says.
+    if (source == STORE_FOVEA_LOST && isnan(use->x_deg[EYE_LEFT]) && isnan(use->x_deg[EYE_RIGHT]))
+        row->effective = "{\"fovea\":\"everywhere\"}";
     row->gaze_id = use->sample_id;
     row->gaze_age_us = use->known ? (double)use->age_ns * 1e-3 : NAN;
 }
@@ -198,8 +202,10 @@ static void time_row(struct show *show, struct store_frame *row)
         return;
     }
     row->present_ns = display_now_ns(display) - show->desc->origin_ns;
-    row->late =
-        show->last_present_ns >= 0 && (double)(row->present_ns - show->last_present_ns) > 1.5 * refresh_ns;
+    row->late = STORE_UNKNOWN;
+    if (!isnan(refresh_ns))
+        row->late =
+            show->last_present_ns >= 0 && (double)(row->present_ns - show->last_present_ns) > 1.5 * refresh_ns;
     show->last_present_ns = row->present_ns;
 }
 

@@ -16,8 +16,9 @@
 enum { STAGE_RESIDENT = 3 }; // scenes on the GPU at once
 
 struct stage_scene {
-    const char *name;                // as the protocol names it; borrowed
-    struct scene *scene;             // borrowed
+    const char *name;    // as the protocol names it; borrowed
+    const char *spec;    // what is shown for it: a built-in scene with parameters or a file; borrowed
+    struct scene *scene; // borrowed
     struct renderer_scene *resident; // NULL: not on the GPU
     uint64_t used;                   // when, for choosing what leaves
 };
@@ -25,7 +26,7 @@ struct stage_scene {
 struct stage_desc {
     struct renderer *renderer;  // borrowed
     const struct plan *plan;    // borrowed
-    struct stage_scene *scenes; // borrowed; name and scene filled in, the rest zero
+    struct stage_scene *scenes; // borrowed; name, spec and scene filled in, the rest zero
     size_t scene_count;
     struct viewing_fov fov; // of each eye
     double ipd_m;

@@ -81,7 +81,7 @@ struct store_frame_row {
     const char *phase;
     int64_t start_ns;
     double cpu_us, gpu_us;
-    bool late, simulated_clock;
+    bool late, late_known, simulated_clock;
     double gaze_age_us, shaded_px;
 };
 
@@ -92,6 +92,7 @@ struct store_exclusion_row {
 
 struct store_gaze_row { // one per session
     int64_t session_id, samples, invalid;
+    int64_t stimulus_frames, lost_frames; // of those that follow a gaze; drawn while it was lost
 };
 
 typedef bool (*store_session_fn)(void *user, const struct store_session_row *row);

@@ -221,6 +221,7 @@ static bool frame_row(sqlite3_stmt *s, const struct call *call)
         .cpu_us = real(s, 7),
         .gpu_us = real(s, 8),
         .late = sqlite3_column_int(s, 9),
+        .late_known = sqlite3_column_type(s, 9) != SQLITE_NULL,
         .gaze_age_us = real(s, 10),
         .shaded_px = real(s, 11),
         .simulated_clock = sqlite3_column_int(s, 12),
@@ -260,14 +261,21 @@ bool store_read_exclusions(struct store_reader *reader, store_exclusion_fn each,
 
 static bool gaze_row(sqlite3_stmt *s, const struct call *call)
 {
-    struct store_gaze_row row = {sqlite3_column_int64(s, 0), sqlite3_column_int64(s, 1),
-                                 sqlite3_column_int64(s, 2)};
+    struct store_gaze_row row = {.session_id = sqlite3_column_int64(s, 0),
+                                 .samples = sqlite3_column_int64(s, 1),
+                                 .invalid = sqlite3_column_int64(s, 2),
+                                 .stimulus_frames = sqlite3_column_int64(s, 3),
+                                 .lost_frames = sqlite3_column_int64(s, 4)};
     return call->gaze(call->user, &row);
 }
 
 bool store_read_gaze_counts(struct store_reader *reader, store_gaze_fn each, void *user)
 {
     static const char sql[] =
-        "SELECT session_id, count(*), sum(NOT valid) FROM gaze GROUP BY session_id ORDER BY session_id";
+        "SELECT g.session_id, g.samples, g.invalid, coalesce(f.frames, 0), coalesce(f.lost, 0) FROM"
+        " (SELECT session_id, count(*) AS samples, sum(NOT valid) AS invalid FROM gaze GROUP BY session_id) g"
+        " LEFT JOIN (SELECT session_id, count(*) AS frames, sum(fovea_source = 'lost') AS lost FROM frame"
+        "  WHERE phase = 'stimulus' AND fovea_source IN ('gaze', 'lost') GROUP BY session_id) f"
+        " ON f.session_id = g.session_id ORDER BY g.session_id";
     return read_rows(reader, sql, gaze_row, &(struct call){.user = user, .gaze = each});
 }

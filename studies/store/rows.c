@@ -96,7 +96,7 @@ static enum store_result write_frame(struct store *store, const struct queue_log
                                        sql_real(frame->gpu_us),
                                        sql_integer(frame->present_ns),
                                        sql_truth(frame->present_estimated),
-                                       sql_truth(frame->late),
+                                       sql_integer(frame->late),
                                        sql_id(frame->gaze_id),
                                        sql_real(frame->gaze_age_us),
                                        sql_text(fovea),

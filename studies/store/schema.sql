@@ -236,7 +236,7 @@ CREATE TABLE frame (
     gpu_us REAL,
     present_ns INTEGER, -- light leaves the display
     present_estimated INTEGER NOT NULL CHECK (present_estimated IN (0, 1)), -- 1: computed, not reported by the display
-    late INTEGER NOT NULL CHECK (late IN (0, 1)), -- shown at least one refresh after its turn
+    late INTEGER CHECK (late IN (0, 1)), -- shown at least one refresh after its turn; NULL where the refresh rate is not known
     gaze_id INTEGER REFERENCES gaze (id), -- the sample the fovea followed
     gaze_age_us REAL, -- of that sample at start_ns
     fovea TEXT CHECK (fovea IS NULL OR json_valid(fovea)), -- JSON {"left":[x,y],"right":[x,y]}, degrees, as used

@@ -86,7 +86,7 @@ static enum store_result add_participant(struct store *store, const struct store
         sql_say(error, "%s: participant %s has the number %lld, not %lld; use that one", store->path,
                 participant->code, (long long)columns[1].integer, (long long)participant->number);
     else if (columns[3].integer && !again)
-        sql_say(error, "%s: participant %s has a session already; resume it, or allow another one", store->path,
+        sql_say(error, "%s: participant %s has a session already in this file; give another code", store->path,
                 participant->code);
     else
         return STORE_OK;

@@ -290,7 +290,8 @@ struct store_frame {
     int64_t start_ns;
     double cpu_us, gpu_us;
     int64_t present_ns;
-    bool present_estimated, late;
+    bool present_estimated;
+    int64_t late;    // 1, 0, or STORE_UNKNOWN where the refresh rate is not known
     int64_t gaze_id; // from store_push_gaze
     double gaze_age_us;
     double fovea_deg[EYES][2]; // x, y; all NaN: none

@@ -148,6 +148,8 @@ static void protocol_mistakes_have_their_place(void **state)
     // each in its range, but not together
     write_protocol("wrong.yaml", "{mode: time_warped}", "{mode: time_warped, fovea_deg: 30}");
     expect(command("fovstudy check '%s/wrong.yaml'", folder), 1, "it must be more than fovea_deg, 30");
+    expect(command("fovstudy check '" SOURCE_DIR "/studies/protocols/short.yaml' --scene atrum=town"), 1,
+           "--scene binds 'atrum', which is no scene of this protocol; it has: atrium");
     expect(command("fovstudy check '%s/no-such.yaml'", folder), 1, "no-such.yaml");
     char path[600];
     snprintf(path, sizeof path, "%s/never.db", folder);

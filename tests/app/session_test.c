@@ -149,7 +149,7 @@ static void errors_were_measured_against_the_reference(void **state)
     (void)state;
     expect("SELECT count(*) FROM measured_error e JOIN condition r ON r.id = reference_id WHERE r.mode = "
            "'regular' AND "
-           "scene = 'atrium' AND metric = 'wrmse'",
+           "scene = 'town:triangles=20000' AND metric = 'wrmse'",
            "3");
     expect("SELECT count(*) FROM measured_error e JOIN condition c ON c.id = condition_id WHERE c.mode = "
            "'regular' AND "
@@ -221,7 +221,13 @@ static void others_answer_from_the_measured_errors(void **state)
     (void)state;
     const struct command_result *result =
         command("fovstudy run '%s/studies/protocols/short.yaml' --db '%s/a.db' --participant p2 --observer sim "
-                "--display none --events '%s/a.jsonl'",
+                "--display none",
+                SOURCE_DIR, folder);
+    assert_int_equal(result->status, 1); // another scene stands for the name: its errors were never measured
+    assert_non_null(strstr(result->err, "holds no measured error"));
+    result =
+        command("fovstudy run '%s/studies/protocols/short.yaml' --db '%s/a.db' --participant p2 --observer sim "
+                "--display none --scene atrium=town:triangles=20000 --events '%s/a.jsonl'",
                 SOURCE_DIR, folder, folder);
     assert_string_equal(result->err, "");
     assert_int_equal(result->status, 0);
@@ -243,7 +249,7 @@ static void others_answer_from_the_measured_errors(void **state)
     expect("SELECT count(DISTINCT session_id) FROM frame", "1");
     result =
         command("fovstudy run '%s/studies/protocols/short.yaml' --db '%s/a.db' --participant p3 --observer sim "
-                "--display none --seed 99",
+                "--display none --scene atrium=town:triangles=20000 --seed 99",
                 SOURCE_DIR, folder);
     assert_int_equal(result->status, 1);
     assert_non_null(strstr(result->err, "seed"));

@@ -16,7 +16,8 @@ enum { PARTICIPANTS = 21 };
 static char folder[512];
 
 #define RUN                                                                                                    \
-    "fovstudy run '" SOURCE_DIR "/studies/protocols/calibration.yaml' --db '%s/study.db' --observer sim "
+    "fovstudy run '" SOURCE_DIR "/studies/protocols/calibration.yaml' --db '%s/study.db' --observer sim "      \
+    "--scene atrium=town:triangles=20000 --scene town=town:triangles=20000,seed=2 "
 
 static void expect(const char *query, const char *answer)
 {
@@ -74,10 +75,7 @@ static int set_up(void **state)
 {
     (void)state;
     command_folder("study", folder, sizeof folder);
-    int failed = command(RUN "--participant p1 --display headless --size 24x27 --refresh 15 --scene "
-                             "atrium=town:triangles=20000 --scene town=town:triangles=20000,seed=2",
-                         folder)
-                     ->status;
+    int failed = command(RUN "--participant p1 --display headless --size 24x27 --refresh 15", folder)->status;
     for (int i = 2; i <= PARTICIPANTS && !failed; i++)
         failed = command(RUN "--participant p%d --display none", folder, i)->status;
     return failed;
