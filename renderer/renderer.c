@@ -171,11 +171,6 @@ void renderer_option_destroy(struct renderer_option *o)
     free(o);
 }
 
-uint64_t renderer_option_memory(const struct renderer_option *o)
-{
-    return o->explanation.bytes;
-}
-
 bool renderer_option_explain(const struct renderer_option *o, char *out, size_t out_size)
 {
     int n = snprintf(out, out_size, "%s%9.2f MiB  in all, %s\n", o->explanation.text,

@@ -58,7 +58,6 @@ void renderer_scene_destroy(struct renderer_scene *scene);
 struct renderer_option *renderer_option_create(struct renderer *renderer, struct renderer_scene *scene,
                                                const struct mode_choice *choice);
 void renderer_option_destroy(struct renderer_option *option);
-uint64_t renderer_option_memory(const struct renderer_option *option); // bytes on the device, scene excluded
 // What was built, why, and its memory, one line each; false: too small.
 bool renderer_option_explain(const struct renderer_option *option, char *out, size_t out_size);
 

@@ -186,11 +186,6 @@ struct fmat4 fmat4_multiply(const struct fmat4 *a, const struct fmat4 *b)
     return narrow(glm::dmat4(glm::make_mat4(a->m)) * glm::dmat4(glm::make_mat4(b->m)));
 }
 
-struct fmat4 fmat4_inverse(const struct fmat4 *a)
-{
-    return narrow(glm::inverse(glm::dmat4(glm::make_mat4(a->m))));
-}
-
 struct dvec3 geometry_snap_origin(struct dvec3 origin, struct dvec3 position)
 {
     const double grid_m = 64, leash_m = 128;

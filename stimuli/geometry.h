@@ -71,7 +71,6 @@ struct fmat4 geometry_relative(const struct dmat4 *world_from_local, struct dvec
 // The inverse of a rigid pose, relative to the origin.
 struct fmat4 geometry_view(const struct pose *eye, struct dvec3 origin);
 struct fmat4 fmat4_multiply(const struct fmat4 *a, const struct fmat4 *b);
-struct fmat4 fmat4_inverse(const struct fmat4 *a);
 
 // The nearest point of a 64 m grid, moved only when `position` is more than 128 m from `origin` on any axis, so
 // that float offsets from it keep about 1e-5 m anywhere in the world.

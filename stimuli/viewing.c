@@ -19,11 +19,6 @@ bool viewing_fov_ok(const struct viewing_fov *fov)
            isfinite(fov->tan_up) && fov->tan_left + fov->tan_right > 0 && fov->tan_down + fov->tan_up > 0;
 }
 
-double viewing_pixels_per_degree(const struct viewing_fov *fov, uint32_t height)
-{
-    return height / (fov->tan_down + fov->tan_up) * rad_per_deg;
-}
-
 struct pose viewing_eye_pose(const struct pose *head, int eye, double ipd_m)
 {
     struct dvec3 side = {eye == EYE_LEFT ? -ipd_m / 2 : ipd_m / 2, 0, 0};

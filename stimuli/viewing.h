@@ -23,8 +23,6 @@ struct viewing_fov {
 // Symmetric with square pixels; NaN for a field of view outside (0, 180) or a zero size.
 struct viewing_fov viewing_symmetric_fov(double vertical_deg, uint32_t width, uint32_t height);
 bool viewing_fov_ok(const struct viewing_fov *fov);
-// At the image centre of an eye of this height (DESIGN: pixels per degree follow the projection at the centre).
-double viewing_pixels_per_degree(const struct viewing_fov *fov, uint32_t height);
 
 // The eye `ipd` / 2 to the side of the head, looking as the head does.
 struct pose viewing_eye_pose(const struct pose *head, int eye, double ipd_m);
