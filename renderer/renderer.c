@@ -128,7 +128,8 @@ void renderer_scene_destroy(struct renderer_scene *scene)
 }
 
 struct renderer_option *renderer_option_create(struct renderer *r, struct renderer_scene *scene,
-                                               const struct mode_choice *choice)
+                                               const struct mode_choice *choice,
+                                               const struct renderer_settings *settings)
 {
     char why[512];
     if ((choice->mode->supported && !choice->mode->supported(r->gpu, why, sizeof why)) ||
@@ -148,6 +149,7 @@ struct renderer_option *renderer_option_create(struct renderer *r, struct render
                                      .width = r->width,
                                      .height = r->height,
                                      .values = choice->values,
+                                     .settings = settings ? *settings : (struct renderer_settings){0},
                                      .frame = &o->constants,
                                      .counters = &o->counters,
                                      .explanation = &o->explanation};
@@ -176,6 +178,26 @@ bool renderer_option_explain(const struct renderer_option *o, char *out, size_t 
     int n = snprintf(out, out_size, "%s%9.2f MiB  in all, %s\n", o->explanation.text,
                      (double)o->explanation.bytes / 1048576, o->mode->name);
     return n >= 0 && (size_t)n < out_size;
+}
+
+uint64_t renderer_option_memory(const struct renderer_option *o)
+{
+    return o->explanation.bytes;
+}
+
+uint64_t renderer_memory(const struct renderer *r)
+{
+    return r->gpu->allocated;
+}
+
+const char *renderer_redraw_name(enum frame_redraw redraw)
+{
+    static const char *const names[FRAME_REDRAW_CAUSES] = {[FRAME_REDRAW_FIRST] = "first",
+                                                           [FRAME_REDRAW_CUT] = "cut",
+                                                           [FRAME_REDRAW_GAP] = "gap",
+                                                           [FRAME_REDRAW_MOTION] = "motion",
+                                                           [FRAME_REDRAW_GAZE] = "gaze"};
+    return names[redraw];
 }
 
 static void store3(float *out, struct dvec3 v)
@@ -257,7 +279,21 @@ static double now_ms(void)
     return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
 }
 
-static void fill_stats(const struct renderer_option *o, bool history, double cpu_ms, struct frame_stats *out)
+static enum frame_redraw redraw_of(const struct renderer_option *o, const struct frame *frame)
+{
+    if (!o->drawn)
+        return FRAME_REDRAW_FIRST;
+    if (frame->cut)
+        return FRAME_REDRAW_CUT;
+    if (frame->number != o->last_number + 1)
+        return FRAME_REDRAW_GAP;
+    if (frame->moving != o->last_moving)
+        return FRAME_REDRAW_MOTION;
+    return frame->gaze_returned ? FRAME_REDRAW_GAZE : FRAME_REDRAW_NONE;
+}
+
+static void fill_stats(const struct renderer_option *o, enum frame_redraw redraw, double cpu_ms,
+                       struct frame_stats *out)
 {
     const struct gpu_frame *f = &o->renderer->frame;
     const struct shared_counters *c = o->counters.mapped;
@@ -267,7 +303,9 @@ static void fill_stats(const struct renderer_option *o, bool history, double cpu
         .submodels = c->submodels,
         .gpu_ms = f->gpu_ms,
         .cpu_ms = cpu_ms,
-        .full_redraw = o->result.redraw_map && !history,
+        .frustum_triangles = c->frustum_triangles ? c->frustum_triangles : c->triangles,
+        .frustum_submodels = c->frustum_submodels ? c->frustum_submodels : c->submodels,
+        .redraw = o->result.redraw_map ? redraw : FRAME_REDRAW_NONE,
         .timer_count = f->timer_count};
     for (uint32_t i = 0; i < f->timer_count && i < FRAME_TIMERS; i++) {
         out->timers[i].name = f->timers[i].name;
@@ -283,8 +321,8 @@ bool renderer_draw(struct renderer_option *o, const struct frame *frame, struct 
         return false;
     }
     const double start = now_ms();
-    const bool history =
-        o->drawn && !frame->cut && frame->number == o->last_number + 1 && frame->moving == o->last_moving;
+    const enum frame_redraw redraw = redraw_of(o, frame);
+    const bool history = redraw == FRAME_REDRAW_NONE;
     if (!gpu_frame_begin(&r->frame))
         return false;
     scene_gpu_update(o->scene->gpu, r->frame.cmd, frame->eyes[EYE_LEFT].pose.position, frame->animation_s,
@@ -303,7 +341,7 @@ bool renderer_draw(struct renderer_option *o, const struct frame *frame, struct 
     o->last_moving = frame->moving;
     o->last_origin = o->scene->gpu->origin;
     if (out_stats)
-        fill_stats(o, history, recorded - start, out_stats);
+        fill_stats(o, redraw, recorded - start, out_stats);
     return true;
 }
 

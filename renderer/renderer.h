@@ -9,6 +9,7 @@
 
 #include "renderer/frame.h"
 #include "renderer/mode.h"
+#include "renderer/settings.h"
 #include "stimuli/scene.h"
 
 #include <stdbool.h>
@@ -54,15 +55,18 @@ uint32_t renderer_validation_messages(const struct renderer *renderer);
 struct renderer_scene *renderer_scene_create(struct renderer *renderer, const struct scene *scene);
 void renderer_scene_destroy(struct renderer_scene *scene);
 
-// All targets and pipelines of one mode on one scene.
+// All targets and pipelines of one mode on one scene. settings NULL: all off.
 struct renderer_option *renderer_option_create(struct renderer *renderer, struct renderer_scene *scene,
-                                               const struct mode_choice *choice);
+                                               const struct mode_choice *choice,
+                                               const struct renderer_settings *settings);
 void renderer_option_destroy(struct renderer_option *option);
 // What was built, why, and its memory, one line each; false: too small.
 bool renderer_option_explain(const struct renderer_option *option, char *out, size_t out_size);
+uint64_t renderer_option_memory(const struct renderer_option *option); // bytes of its targets and buffers
+uint64_t renderer_memory(const struct renderer *renderer);             // bytes of all scenes and options now
 
-// Draws one frame and waits for it. A gap in frame.number, frame.cut, or a change of frame.moving resets the
-// option's history.
+// Draws one frame and waits for it. A gap in frame.number, frame.cut, frame.gaze_returned, or a change of
+// frame.moving resets the option's history.
 bool renderer_draw(struct renderer_option *option, const struct frame *frame, struct frame_stats *out_stats);
 
 // An image laid over both eyes, e.g. text: rgba8, sRGB-encoded, straight alpha. Copied by renderer_set_overlay.
@@ -78,12 +82,17 @@ bool renderer_set_overlay(struct renderer *renderer, const struct renderer_overl
 // 1 gray; then the overlay. option NULL: gray. With a surface this presents and waits for the display's pace;
 // without, the result only lies ready for renderer_read_screen.
 bool renderer_show(struct renderer *renderer, struct renderer_option *option, double fade);
+const char *renderer_redraw_name(enum frame_redraw redraw); // "first", "cut", ...; NULL for none
 void renderer_resized(struct renderer *renderer); // the surface changed size; the next show rebuilds its images
 
 // The option's last frame before fade and overlay: rgba8, sRGB-encoded, width * height * 4 bytes per eye.
 bool renderer_read(struct renderer_option *option, int eye, uint8_t *out_rgba);
 // What the participant sees after renderer_show, per eye.
 bool renderer_read_screen(struct renderer *renderer, int eye, uint8_t *out_rgba);
+// Where each pixel's surface was one frame ago, of an option made with settings.motion: four floats a pixel,
+// its place in the last frame (pixels from the upper left corner, centres at +0.5), its distance in front of
+// the eye then, and now (metres, 0: the background). Places behind the eye or off the image are as they come.
+bool renderer_read_motion(struct renderer_option *option, int eye, float *out_xyzw);
 // 255 where the pixel was drawn anew in the last frame, 0 where it was kept; all 255 for modes without history.
 bool renderer_read_redraw_map(struct renderer_option *option, int eye, uint8_t *out);
 

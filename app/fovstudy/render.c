@@ -320,9 +320,9 @@ static bool render(const struct request *r, const struct scene *scene)
     struct renderer_scene *uploaded = renderer ? renderer_scene_create(renderer, scene) : NULL;
     struct drawing drawing = {0};
     if (uploaded)
-        drawing.option = renderer_option_create(renderer, uploaded, &r->choice);
+        drawing.option = renderer_option_create(renderer, uploaded, &r->choice, NULL);
     if (drawing.option && r->against.mode)
-        drawing.against = renderer_option_create(renderer, uploaded, &r->against);
+        drawing.against = renderer_option_create(renderer, uploaded, &r->against, NULL);
     bool ok = drawing.option && (drawing.against || !r->against.mode);
     if (ok && r->explain) {
         char text[10240];

@@ -101,7 +101,8 @@ static bool make_option(struct stage *stage, int slot, uint32_t condition, char 
 {
     struct mode_choice choice;
     if (stage_choice(&stage->desc.plan->conditions[condition], &choice))
-        stage->options[slot] = renderer_option_create(stage->desc.renderer, stage->scene->resident, &choice);
+        stage->options[slot] =
+            renderer_option_create(stage->desc.renderer, stage->scene->resident, &choice, NULL);
     if (stage->options[slot])
         return true;
     snprintf(error, error_size, "the mode '%s' cannot be set up on this device for the scene '%s'",
@@ -114,7 +115,7 @@ static bool make_reference(struct stage *stage, char *error, size_t error_size)
     if (!stage->desc.reference)
         return true;
     stage->reference =
-        renderer_option_create(stage->desc.renderer, stage->scene->resident, stage->desc.reference);
+        renderer_option_create(stage->desc.renderer, stage->scene->resident, stage->desc.reference, NULL);
     if (!stage->reference)
         snprintf(error, error_size, "the reference cannot be set up on this device for the scene '%s'",
                  stage->scene->name);

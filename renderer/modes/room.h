@@ -5,6 +5,7 @@
 #include "renderer/gpu/frame.h"
 #include "renderer/mode.h"
 #include "renderer/scene/scene_gpu.h"
+#include "renderer/settings.h"
 
 // What an option consists of and why: text lines, and bytes in all.
 struct mode_explanation {
@@ -16,8 +17,9 @@ struct mode_explanation {
 struct mode_setup {
     struct gpu *gpu;
     const struct scene_gpu *scene;
-    uint32_t width, height;            // per eye
-    const double *values;              // of the mode's parameters, in table order
+    uint32_t width, height; // per eye
+    const double *values;   // of the mode's parameters, in table order
+    struct renderer_settings settings;
     const struct gpu_buffer *frame;    // shared_frame, filled before every record
     const struct gpu_buffer *counters; // shared_counters, zeroed before every record
     struct mode_explanation *explanation;

@@ -28,6 +28,7 @@
 
 #define SHARED_TILE 8        // work groups are 8x8 pixels
 #define SHARED_CULL_GROUP 64 // items per culling work group
+#define SHARED_TILES_FIRST 4 // word of a tile list (tiles.glsl) where the tiles begin
 
 struct shared_eye {
     SHARED_MAT4(clip_from_world);
@@ -116,6 +117,8 @@ struct shared_counters {
     SHARED_UINT shaded_px;
     SHARED_UINT triangles;
     SHARED_UINT submodels;
+    SHARED_UINT frustum_triangles; // 0 where culling is by the frustum alone
+    SHARED_UINT frustum_submodels;
 };
 
 #ifndef GL_core_profile

@@ -49,7 +49,7 @@ struct renderer_option *stage_option(struct stage *stage, struct renderer_scene 
     char error[512];
     if (!mode_parse(mode, &choice, error, sizeof error))
         fail_msg("%s", error);
-    struct renderer_option *option = renderer_option_create(stage->renderer, scene, &choice);
+    struct renderer_option *option = renderer_option_create(stage->renderer, scene, &choice, NULL);
     if (!option)
         fail_msg("%s: %s", mode, stage->log);
     return option;

@@ -89,11 +89,11 @@ static void a_device_without_64_bit_atomics(void **state)
     struct renderer_scene *uploaded = renderer_scene_create(r, scene);
     struct mode_choice choice;
     assert_true(mode_parse("time_warped", &choice, error, sizeof error));
-    assert_null(renderer_option_create(r, uploaded, &choice));
+    assert_null(renderer_option_create(r, uploaded, &choice, NULL));
     assert_int_equal(heard.sentences, 1);
     assert_non_null(strstr(heard.last, "time_warped needs 64-bit atomics"));
     assert_true(mode_parse("regular", &choice, error, sizeof error));
-    struct renderer_option *regular = renderer_option_create(r, uploaded, &choice);
+    struct renderer_option *regular = renderer_option_create(r, uploaded, &choice, NULL);
     assert_non_null(regular);
     renderer_option_destroy(regular);
     renderer_scene_destroy(uploaded);

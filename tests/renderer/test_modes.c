@@ -93,7 +93,7 @@ static void a_still_eye_sees_regular_from_the_first_frame(void **state)
         draw(warped, &frame, &stats);
         draw(regular, &frame, NULL);
         assert_int_equal(difference(p, warped, regular).max, 0);
-        assert_int_equal(stats.full_redraw, n == 0);
+        assert_int_equal(stats.redraw, n == 0 ? FRAME_REDRAW_FIRST : FRAME_REDRAW_NONE);
     }
     renderer_option_destroy(warped);
     renderer_option_destroy(regular);
@@ -203,12 +203,13 @@ static void a_cut_and_a_gap_forget_the_past(void **state)
     struct frame_stats stats = {0};
     const uint64_t numbers[] = {0, 1, 5, 6, 7};
     const bool cuts[] = {false, false, false, false, true};
-    const bool full[] = {true, false, true, false, true};
+    const enum frame_redraw full[] = {FRAME_REDRAW_FIRST, FRAME_REDRAW_NONE, FRAME_REDRAW_GAP,
+                                      FRAME_REDRAW_NONE, FRAME_REDRAW_CUT};
     for (int i = 0; i < 5; i++) {
         struct frame frame = stage_frame(&p->stage, p->scene, numbers[i], 0, 0, 0);
         frame.cut = cuts[i];
         draw(warped, &frame, &stats);
-        assert_int_equal(stats.full_redraw, full[i]);
+        assert_int_equal(stats.redraw, full[i]);
     }
     renderer_option_destroy(warped);
 }
