@@ -172,6 +172,7 @@ struct gpu_raster_desc {
     const char *name;
     struct gpu_code vertex, fragment; // fragment.words NULL: depth only
     VkPipelineLayout layout;
+    bool points;                                           // instead of triangles
     const VkVertexInputBindingDescription *vertex_binding; // NULL: no vertex input
     const VkVertexInputAttributeDescription *attributes;
     uint32_t attribute_count;
@@ -183,7 +184,7 @@ struct gpu_raster_desc {
     uint32_t constant_count;
 };
 
-// Triangles; viewport, scissor, cull mode and front face are dynamic.
+// Viewport, scissor, cull mode and front face are dynamic.
 VkPipeline gpu_raster_create(struct gpu *gpu, const struct gpu_raster_desc *desc);
 
 // Mip levels are blended where `min` is linear. anisotropy 1: none.
