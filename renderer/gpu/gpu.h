@@ -167,6 +167,9 @@ VkDescriptorSetLayout gpu_set_layout_create(struct gpu *gpu, const struct gpu_bi
 
 void gpu_dispatch(VkCommandBuffer cmd, const struct gpu_kernel *kernel, VkDescriptorSet set, const void *push,
                   uint32_t push_bytes, uint32_t groups_x, uint32_t groups_y, uint32_t groups_z);
+// The group counts are the buffer's first three words.
+void gpu_dispatch_indirect(VkCommandBuffer cmd, const struct gpu_kernel *kernel, VkDescriptorSet set,
+                           const void *push, uint32_t push_bytes, const struct gpu_buffer *groups);
 
 struct gpu_raster_desc {
     const char *name;
