@@ -27,7 +27,9 @@ struct mode_setup {
 
 struct mode_record {
     struct gpu_frame *gpu_frame; // begun
+    uint64_t number;             // of the frame
     bool history;                // false: nothing from earlier frames may be used
+    bool moving;                 // objects move
     struct mode_result *result;  // set by the mode
 };
 
