@@ -1,6 +1,6 @@
 // Writes JSON strings.
-#ifndef APP_FOVSTUDY_JSON_H
-#define APP_FOVSTUDY_JSON_H
+#ifndef APP_COMMAND_JSON_H
+#define APP_COMMAND_JSON_H
 
 #include <stdio.h>
 

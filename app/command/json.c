@@ -1,4 +1,4 @@
-#include "app/fovstudy/json.h"
+#include "app/command/json.h"
 
 void json_string(FILE *out, const char *text)
 {
