@@ -89,10 +89,11 @@ static bool walk_passes(const struct group_desc *g, struct row *rows)
         for (size_t mode = 0; ok && n >= REQUEST_WARM_UP && mode < lineup.count; mode++)
             pass_series_add(&passes[mode], &stats[mode]);
     }
-    for (size_t mode = 0; mode < REQUEST_MODES; mode++) {
+    for (size_t mode = 0; mode < g->request->mode_count; mode++) {
         for (size_t i = 0; ok && i < passes[mode].pass_count; i++)
             rows[mode].passes[rows[mode].pass_count++] =
                 (struct row_pass){passes[mode].names[i], pass_series_median_ms(&passes[mode], i)};
+        rows[mode].pass_source = "one submission per pass";
         pass_series_finish(&passes[mode]);
     }
     lineup_finish(&lineup);

@@ -43,6 +43,7 @@ struct row {
     struct row_error supersampled; // against regular at factor^2 samples
     struct row_pass passes[FRAME_TIMERS];
     uint32_t pass_count;
+    const char *pass_source; // constant string, how they were timed; NULL: they were not
 };
 
 #endif

@@ -4,6 +4,8 @@
 #include "app/command/output.h"
 #include "app/fovbench/csv.h"
 #include "app/fovbench/group.h"
+#include "app/fovbench/json_write.h"
+#include "app/fovbench/plot.h"
 #include "app/fovbench/table.h"
 
 #include <stdlib.h>
@@ -103,13 +105,19 @@ static bool measure_all(const struct request *r, struct output files[FILES], cha
     return true;
 }
 
-static void write_files(struct output files[FILES], const struct row *rows, size_t count)
+static bool write_files(const struct request *r, struct output files[FILES], const struct row *rows,
+                        size_t count)
 {
-    if (!files[FILE_CSV].file)
-        return;
-    csv_write_header(files[FILE_CSV].file);
-    for (size_t i = 0; i < count; i++)
+    if (files[FILE_CSV].file)
+        csv_write_header(files[FILE_CSV].file);
+    for (size_t i = 0; files[FILE_CSV].file && i < count; i++)
         csv_write_row(files[FILE_CSV].file, &rows[i]);
+    if (files[FILE_JSON].file)
+        json_write(files[FILE_JSON].file, r, rows, count);
+    if (!files[FILE_PLOT].file || plot_write(files[FILE_PLOT].file, rows, count / r->mode_count, r->mode_count))
+        return true;
+    fprintf(stderr, "fovbench: out of memory\n");
+    return false;
 }
 
 int sweep(const struct request *r)
@@ -124,8 +132,7 @@ int sweep(const struct request *r)
     if (ok && files[FILE_FRAMES].file)
         csv_write_frames_header(files[FILE_FRAMES].file);
     ok = ok && measure_all(r, files, names, rows);
-    if (ok)
-        write_files(files, rows, count);
+    ok = ok && write_files(r, files, rows, count);
     ok = close_files(files, ok) && ok;
     free(rows);
     return ok ? EXIT_DONE : EXIT_FAILED;
