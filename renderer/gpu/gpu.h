@@ -167,11 +167,15 @@ VkDescriptorSetLayout gpu_set_layout_create(struct gpu *gpu, const struct gpu_bi
 
 void gpu_dispatch(VkCommandBuffer cmd, const struct gpu_kernel *kernel, VkDescriptorSet set, const void *push,
                   uint32_t push_bytes, uint32_t groups_x, uint32_t groups_y, uint32_t groups_z);
+// The group counts are the buffer's first three words.
+void gpu_dispatch_indirect(VkCommandBuffer cmd, const struct gpu_kernel *kernel, VkDescriptorSet set,
+                           const void *push, uint32_t push_bytes, const struct gpu_buffer *groups);
 
 struct gpu_raster_desc {
     const char *name;
     struct gpu_code vertex, fragment; // fragment.words NULL: depth only
     VkPipelineLayout layout;
+    bool points;                                           // instead of triangles
     const VkVertexInputBindingDescription *vertex_binding; // NULL: no vertex input
     const VkVertexInputAttributeDescription *attributes;
     uint32_t attribute_count;
@@ -183,7 +187,7 @@ struct gpu_raster_desc {
     uint32_t constant_count;
 };
 
-// Triangles; viewport, scissor, cull mode and front face are dynamic.
+// Viewport, scissor, cull mode and front face are dynamic.
 VkPipeline gpu_raster_create(struct gpu *gpu, const struct gpu_raster_desc *desc);
 
 // Mip levels are blended where `min` is linear. anisotropy 1: none.

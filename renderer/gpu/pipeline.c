@@ -133,14 +133,27 @@ void gpu_set_free(struct gpu *gpu, VkDescriptorSet set)
         vkFreeDescriptorSets(gpu->device, gpu->descriptors, 1, &set);
 }
 
-void gpu_dispatch(VkCommandBuffer cmd, const struct gpu_kernel *kernel, VkDescriptorSet set, const void *push,
-                  uint32_t push_bytes, uint32_t groups_x, uint32_t groups_y, uint32_t groups_z)
+static void bind_kernel(VkCommandBuffer cmd, const struct gpu_kernel *kernel, VkDescriptorSet set,
+                        const void *push, uint32_t push_bytes)
 {
     vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, kernel->pipeline);
     vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, kernel->layout, 0, 1, &set, 0, NULL);
     if (push_bytes)
         vkCmdPushConstants(cmd, kernel->layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, push_bytes, push);
+}
+
+void gpu_dispatch(VkCommandBuffer cmd, const struct gpu_kernel *kernel, VkDescriptorSet set, const void *push,
+                  uint32_t push_bytes, uint32_t groups_x, uint32_t groups_y, uint32_t groups_z)
+{
+    bind_kernel(cmd, kernel, set, push, push_bytes);
     vkCmdDispatch(cmd, groups_x, groups_y, groups_z);
+}
+
+void gpu_dispatch_indirect(VkCommandBuffer cmd, const struct gpu_kernel *kernel, VkDescriptorSet set,
+                           const void *push, uint32_t push_bytes, const struct gpu_buffer *groups)
+{
+    bind_kernel(cmd, kernel, set, push, push_bytes);
+    vkCmdDispatchIndirect(cmd, groups->buffer, 0);
 }
 
 VkPipeline gpu_raster_create(struct gpu *gpu, const struct gpu_raster_desc *desc)
@@ -186,7 +199,8 @@ VkPipeline gpu_raster_create(struct gpu *gpu, const struct gpu_raster_desc *desc
         .pInputAssemblyState =
             &(VkPipelineInputAssemblyStateCreateInfo){
                 .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
-                .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST},
+                .topology =
+                    desc->points ? VK_PRIMITIVE_TOPOLOGY_POINT_LIST : VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST},
         .pViewportState =
             &(VkPipelineViewportStateCreateInfo){.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO,
                                                  .viewportCount = 1,

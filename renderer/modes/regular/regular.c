@@ -48,7 +48,10 @@ static bool create_passes(struct mode_state *s, const struct mode_setup *setup)
                                          .width = setup->width,
                                          .height = setup->height};
     if (!gpu_image_create(s->gpu, &colour, &s->colour) ||
-        !cull_init(&s->cull, s->gpu, setup->scene, setup->frame, setup->counters) ||
+        !cull_init(&s->cull, &(struct cull_desc){.gpu = s->gpu,
+                                                 .scene = setup->scene,
+                                                 .frame = setup->frame,
+                                                 .counters = setup->counters}) ||
         !gbuffer_init(&s->gbuffer, &gbuffer))
         return false;
     const struct shade_desc shade = {.gpu = s->gpu,
@@ -96,7 +99,7 @@ static struct mode_state *create(const struct mode_setup *setup)
 static bool record(struct mode_state *s, const struct mode_record *record)
 {
     struct gpu_frame *f = record->gpu_frame;
-    cull_record(&s->cull, gpu_timer_begin(f, "cull"));
+    cull_record(&s->cull, gpu_timer_begin(f, "cull"), false);
     gpu_timer_end(f);
     gbuffer_record(&s->gbuffer, gpu_timer_begin(f, "g-buffer"), &s->cull.draws, &s->cull.draw_counts, false);
     gpu_timer_end(f);

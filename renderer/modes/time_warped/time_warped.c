@@ -20,6 +20,7 @@
 #include "renderer/passes/cull/cull.h"
 #include "renderer/passes/gbuffer/gbuffer.h"
 #include "renderer/passes/pyramid/pyramid.h"
+#include "renderer/passes/redraw/redraw.h"
 #include "renderer/passes/reproject/reproject.h"
 #include "renderer/passes/shade/shade.h"
 #include "renderer/passes/tonemap/tonemap.h"
@@ -49,6 +50,7 @@ struct mode_state {
     struct tonemap tonemap;
     struct reproject reproject;
     struct pyramid pyramid;
+    struct redraw redraw;
     struct compose compose;
     // two histories, written in turn: unfiltered tone-mapped colours and exact positions (reproject.h)
     struct gpu_image colour[2], position[2];
@@ -81,6 +83,7 @@ static void destroy(struct mode_state *s)
     if (!s)
         return;
     compose_finish(&s->compose);
+    redraw_finish(&s->redraw);
     pyramid_finish(&s->pyramid);
     reproject_finish(&s->reproject);
     tonemap_finish(&s->tonemap);
@@ -130,8 +133,22 @@ static bool create_drawing(struct mode_state *s, const struct mode_setup *setup)
                                          .height = setup->height,
                                          .ids = setup->scene->scene->moving_count > 0,
                                          .redraw_map = s->redraw_map.view};
-    if (!cull_init(&s->cull, s->gpu, setup->scene, setup->frame, setup->counters) ||
-        !gbuffer_init(&s->gbuffer, &gbuffer))
+    const struct redraw_desc redraw = {.gpu = s->gpu,
+                                       .counters = setup->counters,
+                                       .width = setup->width,
+                                       .height = setup->height,
+                                       .redraw_map = s->redraw_map.view};
+    if (!redraw_init(&s->redraw, &redraw))
+        return false;
+    const struct cull_desc cull = {.gpu = s->gpu,
+                                   .scene = setup->scene,
+                                   .frame = setup->frame,
+                                   .counters = setup->counters,
+                                   .pyramid = &s->redraw.pyramid,
+                                   .tiles_x = s->redraw.tiles_x,
+                                   .tiles_y = s->redraw.tiles_y,
+                                   .levels = s->redraw.levels};
+    if (!cull_init(&s->cull, &cull) || !gbuffer_init(&s->gbuffer, &gbuffer))
         return false;
     const struct shade_desc shade = {.gpu = s->gpu,
                                      .frame = setup->frame,
@@ -167,7 +184,6 @@ static bool create_warping(struct mode_state *s, const struct mode_setup *setup)
                                              .position = {s->position[0].view, s->position[1].view}};
     const struct pyramid_desc pyramid = {.gpu = s->gpu,
                                          .frame = setup->frame,
-                                         .counters = setup->counters,
                                          .width = setup->width,
                                          .height = setup->height,
                                          .colour = {s->colour[0].view, s->colour[1].view},
@@ -205,10 +221,11 @@ static void explain(const struct mode_state *s, const struct mode_setup *setup)
     mode_explain(e, s->colour[0].bytes + s->colour[1].bytes, "tone-mapped colour of this and the last frame");
     mode_explain(e, s->position[0].bytes + s->position[1].bytes,
                  "world positions of this and the last frame, 128 bit");
-    mode_explain(e, s->reproject.keys.size, "reprojection keys, 64 bit");
-    mode_explain(e, s->pyramid.image.bytes, "pull-push pyramid, %u levels because A^m < epsilon beyond",
+    mode_explain(e, reproject_memory(&s->reproject), "reprojection keys, 64 bit");
+    mode_explain(e, pyramid_memory(&s->pyramid), "pull-push pyramid, %u levels because A^m < epsilon beyond",
                  s->pyramid.confidence.levels);
-    mode_explain(e, s->redraw_map.bytes, "redraw map");
+    mode_explain(e, s->redraw_map.bytes + redraw_memory(&s->redraw),
+                 "redraw map, its or-pyramid and list of tiles");
 }
 
 static struct mode_state *create(const struct mode_setup *setup)
@@ -242,8 +259,8 @@ static void mark_all(struct mode_state *s, struct gpu_frame *f)
 static void warp(struct mode_state *s, struct gpu_frame *f, uint32_t target)
 {
     // epsilon 0 redraws nothing, so the fovea must come from the last frame too
-    reproject_record(&s->reproject, gpu_timer_begin(f, "reproject"), s->last,
-                     s->epsilon > 0 ? s->fovea_deg : 0);
+    reproject_record(&s->reproject, gpu_timer_begin(f, "reproject"), s->last, s->epsilon > 0 ? s->fovea_deg : 0,
+                     false);
     gpu_timer_end(f);
     pyramid_pull(&s->pyramid, gpu_timer_begin(f, "pull"), target);
     gpu_timer_end(f);
@@ -268,7 +285,9 @@ static bool record(struct mode_state *s, const struct mode_record *record)
         warp(s, f, target);
     else
         mark_all(s, f);
-    cull_record(&s->cull, gpu_timer_begin(f, "cull"));
+    redraw_record(&s->redraw, gpu_timer_begin(f, "redraw tiles"), true);
+    gpu_timer_end(f);
+    cull_record(&s->cull, gpu_timer_begin(f, "cull"), false);
     gpu_timer_end(f);
     gbuffer_record(&s->gbuffer, gpu_timer_begin(f, "g-buffer"), &s->cull.draws, &s->cull.draw_counts, warped);
     gpu_timer_end(f);
@@ -282,8 +301,8 @@ static bool record(struct mode_state *s, const struct mode_record *record)
     gpu_timer_end(f);
     s->last = target;
     s->in_use = true;
-    *record->result = (struct mode_result){
-        .colour = &s->colour[target], .redraw_map = &s->redraw_map, .counts_shaded = warped};
+    *record->result =
+        (struct mode_result){.colour = &s->colour[target], .redraw_map = &s->redraw_map, .counts_shaded = true};
     return true;
 }
 

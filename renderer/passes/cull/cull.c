@@ -1,15 +1,26 @@
 #include "renderer/passes/cull/cull.h"
 
 #include "cull_count.comp.h"
+#include "cull_count.comp_redraw.h"
 #include "cull_emit.comp.h"
 
-static const struct gpu_binding count_bindings[] = {
+#include <string.h>
+
+enum { COUNTERS = 6, PYRAMID, COUNT_BINDINGS };
+
+static const struct gpu_binding count_bindings[COUNT_BINDINGS] = {
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // frame
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // items
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // objects
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // groups
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // visible
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // group counts
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // counters, with a redraw map
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // or-pyramid of the redraw map
+};
+
+struct count_push {
+    uint32_t tiles_x, tiles_y, levels, moving_everywhere;
 };
 
 static const struct gpu_binding emit_bindings[] = {
@@ -38,38 +49,58 @@ static bool create_buffers(struct cull *c)
                              GPU_DEVICE, &c->draw_counts);
 }
 
-bool cull_init(struct cull *c, struct gpu *gpu, const struct scene_gpu *scene, const struct gpu_buffer *frame,
-               const struct gpu_buffer *counters)
+static bool create_count(struct cull *c, const struct cull_desc *desc)
 {
-    *c = (struct cull){.gpu = gpu, .scene = scene};
-    const struct gpu_kernel_desc count = {.name = "cull count",
-                                          .code = {cull_count_comp, sizeof cull_count_comp},
-                                          .bindings = count_bindings,
-                                          .binding_count = countof(count_bindings)};
-    const int32_t buckets = (int32_t)scene->bucket_count;
+    struct gpu_binding bindings[COUNT_BINDINGS];
+    memcpy(bindings, count_bindings, sizeof bindings);
+    bindings[COUNTERS].absent = bindings[PYRAMID].absent = !c->by_redraw_map;
+    const struct gpu_kernel_desc count = {
+        .name = "cull count",
+        .code = c->by_redraw_map ? (struct gpu_code){cull_count_comp_redraw, sizeof cull_count_comp_redraw}
+                                 : (struct gpu_code){cull_count_comp, sizeof cull_count_comp},
+        .bindings = bindings,
+        .binding_count = countof(bindings),
+        .push_bytes = c->by_redraw_map ? sizeof(struct count_push) : 0};
+    const struct gpu_resource resources[] = {
+        {.buffer = desc->frame},       {.buffer = &c->scene->items}, {.buffer = &c->scene->objects},
+        {.buffer = &c->scene->groups}, {.buffer = &c->visible},      {.buffer = &c->group_counts},
+        {.buffer = desc->counters},    {.buffer = desc->pyramid},
+    };
+    if (!gpu_kernel_create(c->gpu, &count, &c->count))
+        return false;
+    c->count_set = gpu_set_create(c->gpu, c->count.set_layout, bindings, resources, countof(resources));
+    return c->count_set;
+}
+
+static bool create_emit(struct cull *c, const struct cull_desc *desc)
+{
+    const int32_t buckets = (int32_t)c->scene->bucket_count;
     const struct gpu_kernel_desc emit = {.name = "cull emit",
                                          .code = {cull_emit_comp, sizeof cull_emit_comp},
                                          .bindings = emit_bindings,
                                          .binding_count = countof(emit_bindings),
                                          .constants = &buckets,
                                          .constant_count = 1};
-    if (!create_buffers(c) || !gpu_kernel_create(gpu, &count, &c->count) ||
-        !gpu_kernel_create(gpu, &emit, &c->emit))
-        return false;
-    const struct gpu_resource count_resources[] = {
-        {.buffer = frame},          {.buffer = &scene->items}, {.buffer = &scene->objects},
-        {.buffer = &scene->groups}, {.buffer = &c->visible},   {.buffer = &c->group_counts},
-    };
-    const struct gpu_resource emit_resources[] = {
-        {.buffer = frame},           {.buffer = &scene->items},    {.buffer = &scene->groups},
+    const struct gpu_resource resources[] = {
+        {.buffer = desc->frame},     {.buffer = &c->scene->items}, {.buffer = &c->scene->groups},
         {.buffer = &c->visible},     {.buffer = &c->group_counts}, {.buffer = &c->draws},
-        {.buffer = &c->draw_counts}, {.buffer = counters},
+        {.buffer = &c->draw_counts}, {.buffer = desc->counters},
     };
-    c->count_set =
-        gpu_set_create(gpu, c->count.set_layout, count_bindings, count_resources, countof(count_resources));
-    c->emit_set =
-        gpu_set_create(gpu, c->emit.set_layout, emit_bindings, emit_resources, countof(emit_resources));
-    return c->count_set && c->emit_set;
+    if (!gpu_kernel_create(c->gpu, &emit, &c->emit))
+        return false;
+    c->emit_set = gpu_set_create(c->gpu, c->emit.set_layout, emit_bindings, resources, countof(resources));
+    return c->emit_set;
+}
+
+bool cull_init(struct cull *c, const struct cull_desc *desc)
+{
+    *c = (struct cull){.gpu = desc->gpu,
+                       .scene = desc->scene,
+                       .by_redraw_map = desc->pyramid != NULL,
+                       .tiles_x = desc->tiles_x,
+                       .tiles_y = desc->tiles_y,
+                       .levels = desc->levels};
+    return create_buffers(c) && create_count(c, desc) && create_emit(c, desc);
 }
 
 void cull_finish(struct cull *c)
@@ -92,11 +123,13 @@ uint64_t cull_memory(const struct cull *c)
     return c->visible.size + c->group_counts.size + c->draws.size + c->draw_counts.size;
 }
 
-void cull_record(const struct cull *c, VkCommandBuffer cmd)
+void cull_record(const struct cull *c, VkCommandBuffer cmd, bool moving_everywhere)
 {
     const VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+    const struct count_push push = {c->tiles_x, c->tiles_y, c->levels, moving_everywhere};
     gpu_barrier(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, compute);
-    gpu_dispatch(cmd, &c->count, c->count_set, NULL, 0, c->scene->group_count, 2, 1);
+    gpu_dispatch(cmd, &c->count, c->count_set, &push, c->by_redraw_map ? sizeof push : 0, c->scene->group_count,
+                 2, 1);
     gpu_barrier(cmd, compute, compute);
     gpu_dispatch(cmd, &c->emit, c->emit_set, NULL, 0, c->scene->group_count, 2, 1);
     gpu_barrier(cmd, compute, VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT);

@@ -1,4 +1,5 @@
-// Frustum culling of submodels on the GPU, for both eyes: writes compacted indirect draws bucket by bucket.
+// Culling of submodels on the GPU, for both eyes, by the frustum and, where there is one, by the redraw map:
+// writes compacted indirect draws bucket by bucket.
 //
 // The order of the draws is the order of the items, whatever the device's timing, so that equal depths resolve
 // alike in every run. Compaction after Blelloch's scan, one level: groups of SHARED_CULL_GROUP items count,
@@ -17,13 +18,24 @@ struct cull {
     struct gpu_buffer group_counts; // per eye and group
     struct gpu_buffer draws; // shared_draw, per eye and item slot; a bucket's draws start at its first item
     struct gpu_buffer draw_counts; // per eye and bucket
+    bool by_redraw_map;
+    uint32_t tiles_x, tiles_y, levels;
 };
 
-bool cull_init(struct cull *cull, struct gpu *gpu, const struct scene_gpu *scene,
-               const struct gpu_buffer *frame, const struct gpu_buffer *counters);
+struct cull_desc {
+    struct gpu *gpu;
+    const struct scene_gpu *scene;
+    const struct gpu_buffer *frame, *counters;
+    // the or-pyramid of passes/redraw and its shape; NULL: the frustum alone
+    const struct gpu_buffer *pyramid;
+    uint32_t tiles_x, tiles_y, levels;
+};
+
+bool cull_init(struct cull *cull, const struct cull_desc *desc);
 void cull_finish(struct cull *cull);
 uint64_t cull_memory(const struct cull *cull);
-// Leaves draws and draw_counts ready for indirect drawing.
-void cull_record(const struct cull *cull, VkCommandBuffer cmd);
+// Leaves draws and draw_counts ready for indirect drawing. moving_everywhere: the redraw map does not count for
+// moving objects.
+void cull_record(const struct cull *cull, VkCommandBuffer cmd, bool moving_everywhere);
 
 #endif

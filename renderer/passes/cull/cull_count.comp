@@ -3,6 +3,8 @@
 #extension GL_GOOGLE_include_directive : require
 #include "renderer/shared/shared.h"
 
+// REDRAW: what owns no redrawn pixel is out too.
+
 layout(local_size_x = SHARED_CULL_GROUP) in;
 
 layout(scalar, binding = 0) readonly buffer Frame { shared_frame frame; };
@@ -11,6 +13,17 @@ layout(scalar, binding = 2) readonly buffer Objects { shared_object objects[]; }
 layout(scalar, binding = 3) readonly buffer Groups { shared_cull_group groups[]; };
 layout(scalar, binding = 4) writeonly buffer Visible { uint visible[]; };
 layout(scalar, binding = 5) writeonly buffer GroupCounts { uint group_counts[]; };
+#ifdef REDRAW
+layout(scalar, binding = 6) buffer Counters { shared_counters counters; };
+layout(scalar, binding = 7) readonly buffer Pyramid { uint pyramid[]; }; // passes/redraw
+layout(push_constant) uniform Push {
+    uint tiles_x, tiles_y, levels;
+    uint moving_everywhere; // 1: moving objects are drawn wherever they are
+} push;
+
+shared uint in_frustum, triangles;
+#include "renderer/passes/cull/redraw.glsl"
+#endif
 
 shared uint count;
 
@@ -36,17 +49,35 @@ void main()
 {
     uint eye = gl_WorkGroupID.y, lane = gl_LocalInvocationID.x;
     shared_cull_group group = groups[gl_WorkGroupID.x];
-    if (lane == 0)
+    if (lane == 0) {
         count = 0;
+#ifdef REDRAW
+        in_frustum = triangles = 0;
+#endif
+    }
     barrier();
     if (lane < group.item_count) {
-        uint item = group.first_item + lane;
-        bool v = seen(items[item], eye);
-        visible[eye * frame.item_count + item] = v ? 1u : 0u;
+        uint index = group.first_item + lane;
+        shared_item item = items[index];
+        bool v = seen(item, eye);
+#ifdef REDRAW
+        if (v) {
+            atomicAdd(in_frustum, 1);
+            atomicAdd(triangles, item.index_count / 3);
+            bool everywhere = push.moving_everywhere != 0u && objects[item.object].moving_id != 0u;
+            v = everywhere || redrawn(item, eye);
+        }
+#endif
+        visible[eye * frame.item_count + index] = v ? 1u : 0u;
         if (v)
             atomicAdd(count, 1);
     }
     barrier();
-    if (lane == 0)
+    if (lane == 0) {
         group_counts[eye * gl_NumWorkGroups.x + gl_WorkGroupID.x] = count;
+#ifdef REDRAW
+        atomicAdd(counters.frustum_submodels, in_frustum);
+        atomicAdd(counters.frustum_triangles, triangles);
+#endif
+    }
 }

@@ -1,8 +1,9 @@
 // Hole filling and confidence: Franke et al. 2021, sections 5.1 and 5.2.
 //
 // Pull: a mip pyramid of the valid reprojected colours, whose alpha is the contrast confidence of the four
-// inputs (0: none valid). Fill: a hole takes the finest level that has a value there; the confidence of every
-// pixel decides whether it is redrawn.
+// inputs (0: none valid), and of their farthest depths. Fill: a hole takes the finest level that has a value
+// there; the confidence of every pixel decides whether it is redrawn. A kept hole's position becomes (depth, 0,
+// 0, 0), reversed depth, 0 for the background.
 #ifndef RENDERER_PASSES_PYRAMID_PYRAMID_H
 #define RENDERER_PASSES_PYRAMID_PYRAMID_H
 
@@ -23,29 +24,31 @@ struct pyramid {
     uint32_t width, height;
     struct pyramid_confidence confidence;
     struct gpu_image image; // level m of the pyramid is its mip m - 1
-    VkImageView level_views[PYRAMID_LEVELS];
+    struct gpu_image depth; // its farthest depths, reversed; 0: the background, or nothing
+    VkImageView level_views[PYRAMID_LEVELS], depth_views[PYRAMID_LEVELS];
     VkSampler sampler;
-    struct gpu_kernel pull, fill;
-    uint32_t pull_count;
-    VkDescriptorSet pull_sets[2][PYRAMID_LEVELS]; // by target, then by dispatch
+    struct gpu_kernel pull_first, pull, fill;
+    VkDescriptorSet pull_sets[2][PYRAMID_LEVELS]; // by target, then by level
     VkDescriptorSet fill_sets[2];
 };
 
 struct pyramid_desc {
     struct gpu *gpu;
-    const struct gpu_buffer *frame, *counters;
+    const struct gpu_buffer *frame;
     uint32_t width, height;
     VkImageView colour[2], position[2]; // rgba8, rgba32f
     VkImageView redraw_map;             // r8 uint, written
+    bool forced;                        // the map is read first: what it holds is redrawn
     struct pyramid_confidence confidence;
 };
 
 bool pyramid_init(struct pyramid *pyramid, const struct pyramid_desc *desc);
 void pyramid_finish(struct pyramid *pyramid);
+uint64_t pyramid_memory(const struct pyramid *pyramid);
 // The deepest level that can matter: beyond it A^m < epsilon, and the hole is redrawn whatever its colour.
 uint32_t pyramid_levels(uint32_t width, uint32_t height, float epsilon, float hole_decay);
 void pyramid_pull(const struct pyramid *pyramid, VkCommandBuffer cmd, uint32_t target);
-// Fills holes of colour `target`, writes the redraw map and adds redrawn pixels to counters.shaded_px.
+// Fills holes of colour `target` and writes the redraw map.
 void pyramid_fill(const struct pyramid *pyramid, VkCommandBuffer cmd, uint32_t target);
 
 #endif

@@ -3,13 +3,11 @@
 #include "renderer/shared/shared.h"
 
 #include "shade.comp.h"
-#include "shade.comp_emissive.h"
-#include "shade.comp_emissive_redraw.h"
 #include "shade.comp_redraw.h"
 
 #include <string.h>
 
-enum { EMISSIVE = 7, REDRAW_MAP = 8, BINDINGS };
+enum { REDRAW_MAP = 12, TILES = 13, BINDINGS };
 
 static const struct gpu_binding all_bindings[BINDINGS] = {
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},         // frame
@@ -19,29 +17,52 @@ static const struct gpu_binding all_bindings[BINDINGS] = {
     {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, // surface
     {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, // depth
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},          // hdr
-    {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, // emissive, where something glows
-    {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},          // redraw map, where there is one
+    {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, // emissive
+    {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, // occlusion
+    {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, // its distances
+    {.absent = true},
+    {.absent = true},
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},  // redraw map, where there is one
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // tiles of it
 };
 
-static struct gpu_code code_for(const struct shade_desc *desc)
+static bool create_kernel(struct shade *s, const struct shade_desc *desc, struct gpu_binding *bindings)
 {
-    if (desc->emissive)
-        return desc->redraw_map
-                   ? (struct gpu_code){shade_comp_emissive_redraw, sizeof shade_comp_emissive_redraw}
-                   : (struct gpu_code){shade_comp_emissive, sizeof shade_comp_emissive};
-    return desc->redraw_map ? (struct gpu_code){shade_comp_redraw, sizeof shade_comp_redraw}
-                            : (struct gpu_code){shade_comp, sizeof shade_comp};
+    memcpy(bindings, all_bindings, sizeof all_bindings);
+    bindings[REDRAW_MAP].absent = bindings[TILES].absent = !desc->redraw_map;
+    const struct gpu_code code = desc->redraw_map
+                                     ? (struct gpu_code){shade_comp_redraw, sizeof shade_comp_redraw}
+                                     : (struct gpu_code){shade_comp, sizeof shade_comp};
+    const int32_t constants[] = {desc->emissive != VK_NULL_HANDLE, desc->ao != VK_NULL_HANDLE,
+                                 desc->every_light};
+    return gpu_kernel_create(s->gpu,
+                             &(struct gpu_kernel_desc){.name = "shade",
+                                                       .code = code,
+                                                       .bindings = bindings,
+                                                       .binding_count = BINDINGS,
+                                                       .push_bytes = desc->redraw_map ? sizeof(uint32_t) : 0,
+                                                       .constants = constants,
+                                                       .constant_count = countof(constants)},
+                             &s->kernel);
+}
+
+// `image`, or what stands in for it where there is none: the kernel's variant does not read it, but what a
+// shader names must be bound.
+static struct gpu_resource sampled(const struct shade *s, VkImageView image, VkImageLayout layout,
+                                   VkImageView other)
+{
+    return (struct gpu_resource){.view = image ? image : other,
+                                 .sampler = s->sampler,
+                                 .layout = image ? layout : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
 }
 
 bool shade_init(struct shade *s, const struct shade_desc *desc)
 {
-    *s = (struct shade){.gpu = desc->gpu, .width = desc->width, .height = desc->height};
-    struct gpu_binding bindings[BINDINGS];
-    memcpy(bindings, all_bindings, sizeof bindings);
-    bindings[EMISSIVE].absent = !desc->emissive;
-    bindings[REDRAW_MAP].absent = !desc->redraw_map;
-    const struct gpu_kernel_desc kernel = {
-        .name = "shade", .code = code_for(desc), .bindings = bindings, .binding_count = countof(bindings)};
+    *s = (struct shade){.gpu = desc->gpu,
+                        .width = desc->width,
+                        .height = desc->height,
+                        .redraw = desc->redraw_map,
+                        .tiles = desc->tiles};
     const struct gpu_image_desc hdr = {.name = "hdr",
                                        .format = VK_FORMAT_R16G16B16A16_SFLOAT,
                                        .width = desc->width,
@@ -49,12 +70,12 @@ bool shade_init(struct shade *s, const struct shade_desc *desc)
                                        .layers = 2,
                                        .array = true,
                                        .usage = VK_IMAGE_USAGE_STORAGE_BIT};
+    struct gpu_binding bindings[BINDINGS];
     s->sampler = gpu_sampler_create_plain(s->gpu);
-    if (!s->sampler || !gpu_image_create(s->gpu, &hdr, &s->hdr) ||
-        !gpu_kernel_create(s->gpu, &kernel, &s->kernel))
+    if (!s->sampler || !gpu_image_create(s->gpu, &hdr, &s->hdr) || !create_kernel(s, desc, bindings))
         return false;
     const VkImageLayout colour = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-    const struct gpu_resource resources[] = {
+    const struct gpu_resource resources[BINDINGS] = {
         {.buffer = desc->frame},
         {.buffer = desc->lights},
         {.view = desc->base, .sampler = s->sampler, .layout = colour},
@@ -62,8 +83,11 @@ bool shade_init(struct shade *s, const struct shade_desc *desc)
         {.view = desc->surface, .sampler = s->sampler, .layout = colour},
         {.view = desc->depth, .sampler = s->sampler, .layout = VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL},
         {.view = s->hdr.view},
-        {.view = desc->emissive, .sampler = s->sampler, .layout = colour},
-        {.view = desc->redraw_map},
+        sampled(s, desc->emissive, colour, desc->base),
+        sampled(s, desc->ao, VK_IMAGE_LAYOUT_GENERAL, desc->base),
+        sampled(s, desc->ao_depth, VK_IMAGE_LAYOUT_GENERAL, desc->base),
+        [REDRAW_MAP] = {.view = desc->redraw_map},
+        [TILES] = {.buffer = desc->tiles ? desc->tiles : desc->frame},
     };
     s->set = gpu_set_create(s->gpu, s->kernel.set_layout, bindings, resources, countof(resources));
     return s->set;
@@ -82,7 +106,15 @@ void shade_finish(struct shade *s)
 
 void shade_record(const struct shade *s, VkCommandBuffer cmd)
 {
+    const uint32_t listed = 0;
     gpu_image_layout(cmd, &s->hdr, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
-    gpu_dispatch(cmd, &s->kernel, s->set, NULL, 0, (s->width + SHARED_TILE - 1) / SHARED_TILE,
-                 (s->height + SHARED_TILE - 1) / SHARED_TILE, 2);
+    gpu_dispatch(cmd, &s->kernel, s->set, &listed, s->redraw ? sizeof listed : 0,
+                 (s->width + SHARED_TILE - 1) / SHARED_TILE, (s->height + SHARED_TILE - 1) / SHARED_TILE, 2);
+}
+
+void shade_record_tiles(const struct shade *s, VkCommandBuffer cmd)
+{
+    const uint32_t listed = 1;
+    gpu_image_layout(cmd, &s->hdr, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
+    gpu_dispatch_indirect(cmd, &s->kernel, s->set, &listed, sizeof listed, s->tiles);
 }

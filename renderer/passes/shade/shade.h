@@ -1,6 +1,8 @@
 // Lights the G-buffer in compute: GGX with sun, sky and point lights, linear HDR out (cd/m^2, rgba16f).
 //
-// BRDF after Karis, "Real Shading in Unreal Engine 4", SIGGRAPH 2013 course notes; details in shade.comp.
+// BRDF after Karis, "Real Shading in Unreal Engine 4", SIGGRAPH 2013 course notes; details in lighting.glsl.
+// Local lights by tile (light_list.glsl); with a redraw map only its pixels, from all tiles or from a list of
+// them.
 #ifndef RENDERER_PASSES_SHADE_SHADE_H
 #define RENDERER_PASSES_SHADE_SHADE_H
 
@@ -11,6 +13,8 @@ struct shade {
     uint32_t width, height;
     struct gpu_kernel kernel;
     VkDescriptorSet set;
+    bool redraw;
+    const struct gpu_buffer *tiles;
     VkSampler sampler;
     struct gpu_image hdr; // two layers, layout GENERAL while in use
 };
@@ -21,12 +25,20 @@ struct shade_desc {
     uint32_t width, height;
     // the G-buffer's targets, layouts as gbuffer_record leaves them
     VkImageView base, normal, surface, depth;
-    VkImageView emissive;   // null: nothing glows
-    VkImageView redraw_map; // r8 uint, GENERAL; null: every pixel is shaded
+    VkImageView emissive; // null: nothing glows
+    // Ambient occlusion of half size, rounded up, two layers, sampled, GENERAL: 1 is open. Null: none. Its
+    // distances along the view axis are r32f, 0 for background.
+    VkImageView ao, ao_depth;
+    VkImageView redraw_map;         // r8 uint, GENERAL; null: every pixel is shaded
+    const struct gpu_buffer *tiles; // of the redraw map (tiles.glsl); NULL: shade_record_tiles is not used
+    bool every_light;               // no light lists: what they must equal, for tests
 };
 
 bool shade_init(struct shade *shade, const struct shade_desc *desc);
 void shade_finish(struct shade *shade);
+// The whole screen, or of it the redraw map's pixels.
 void shade_record(const struct shade *shade, VkCommandBuffer cmd);
+// The same pixels from the list of tiles, which must be visible to DRAW_INDIRECT and COMPUTE_SHADER.
+void shade_record_tiles(const struct shade *shade, VkCommandBuffer cmd);
 
 #endif

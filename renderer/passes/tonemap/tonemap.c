@@ -7,33 +7,42 @@
 
 #include <string.h>
 
-enum { REDRAW_MAP = 3, BINDINGS };
+enum { REDRAW_MAP = 3, TILES = 4, BINDINGS };
 
 static const struct gpu_binding all_bindings[BINDINGS] = {
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // frame
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},  // hdr
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},  // target
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},  // redraw map, where there is one
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // tiles of it
 };
 
 bool tonemap_init(struct tonemap *t, const struct tonemap_desc *desc)
 {
-    *t = (struct tonemap){.gpu = desc->gpu, .width = desc->width, .height = desc->height};
+    *t = (struct tonemap){.gpu = desc->gpu,
+                          .width = desc->width,
+                          .height = desc->height,
+                          .redraw = desc->redraw_map,
+                          .tiles = desc->tiles};
     struct gpu_binding bindings[BINDINGS];
     memcpy(bindings, all_bindings, sizeof bindings);
-    bindings[REDRAW_MAP].absent = !desc->redraw_map;
+    bindings[REDRAW_MAP].absent = bindings[TILES].absent = !desc->redraw_map;
     const struct gpu_code code = desc->redraw_map
                                      ? (struct gpu_code){tonemap_comp_redraw, sizeof tonemap_comp_redraw}
                                      : (struct gpu_code){tonemap_comp, sizeof tonemap_comp};
-    const struct gpu_kernel_desc kernel = {
-        .name = "tonemap", .code = code, .bindings = bindings, .binding_count = countof(bindings)};
+    const struct gpu_kernel_desc kernel = {.name = "tonemap",
+                                           .code = code,
+                                           .bindings = bindings,
+                                           .binding_count = countof(bindings),
+                                           .push_bytes = desc->redraw_map ? sizeof(uint32_t) : 0};
     if (!gpu_kernel_create(t->gpu, &kernel, &t->kernel))
         return false;
     for (uint32_t i = 0; i < 2 && desc->targets[i]; i++) {
         const struct gpu_resource resources[] = {{.buffer = desc->frame},
                                                  {.view = desc->hdr},
                                                  {.view = desc->targets[i]},
-                                                 {.view = desc->redraw_map}};
+                                                 {.view = desc->redraw_map},
+                                                 {.buffer = desc->tiles ? desc->tiles : desc->frame}};
         t->sets[i] = gpu_set_create(t->gpu, t->kernel.set_layout, bindings, resources, countof(bindings));
         if (!t->sets[i])
             return false;
@@ -53,6 +62,13 @@ void tonemap_finish(struct tonemap *t)
 
 void tonemap_record(const struct tonemap *t, VkCommandBuffer cmd, uint32_t target)
 {
-    gpu_dispatch(cmd, &t->kernel, t->sets[target], NULL, 0, (t->width + SHARED_TILE - 1) / SHARED_TILE,
-                 (t->height + SHARED_TILE - 1) / SHARED_TILE, 2);
+    const uint32_t listed = 0;
+    gpu_dispatch(cmd, &t->kernel, t->sets[target], &listed, t->redraw ? sizeof listed : 0,
+                 (t->width + SHARED_TILE - 1) / SHARED_TILE, (t->height + SHARED_TILE - 1) / SHARED_TILE, 2);
+}
+
+void tonemap_record_tiles(const struct tonemap *t, VkCommandBuffer cmd, uint32_t target)
+{
+    const uint32_t listed = 1;
+    gpu_dispatch_indirect(cmd, &t->kernel, t->sets[target], &listed, sizeof listed, t->tiles);
 }

@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "renderer/shared/shared.h"
 #include "renderer/shared/colour.glsl"
+#include "renderer/shared/tiles.glsl"
 
 layout(local_size_x = SHARED_TILE, local_size_y = SHARED_TILE) in;
 
@@ -11,11 +12,21 @@ layout(binding = 1, rgba16f) uniform readonly image2DArray hdr;
 layout(binding = 2, rgba8) uniform writeonly image2DArray target;
 #ifdef REDRAW
 layout(binding = 3, r8ui) uniform readonly uimage2DArray redraw_map;
+layout(scalar, binding = 4) readonly buffer Tiles { uint tiles[]; };
+layout(push_constant) uniform Push { uint listed; } push;
 #endif
 
 void main()
 {
     ivec3 pixel = ivec3(gl_GlobalInvocationID);
+#ifdef REDRAW
+    if (push.listed != 0u) {
+        uint index = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+        if (index >= tiles[SHARED_TILES_FIRST - 1])
+            return;
+        pixel = tile_pixel(tiles[SHARED_TILES_FIRST + index], gl_LocalInvocationID.xy);
+    }
+#endif
     if (pixel.x >= int(frame.width) || pixel.y >= int(frame.height))
         return;
 #ifdef REDRAW

@@ -1,0 +1,32 @@
+// Where a kept point lands in this frame's pixels. Needs frame, motions, position_image, push and move.glsl.
+
+struct landing {
+    bool lands;
+    vec2 at;     // the pixel, whole numbers
+    float depth; // reversed; 0: the background
+};
+
+landing land(ivec3 source)
+{
+    const landing nowhere = landing(false, vec2(0.0), 0.0);
+    vec4 position = imageLoad(position_image, source);
+    if (position.w == 0.0) // a filled hole is never warped again
+        return nowhere;
+    if (push.drop_moving != 0u && position.w >= 2.0)
+        return nowhere;
+    mat4 world_from_eye = frame.eyes[source.z].world_from_eye;
+    position = move_position(position);
+    bool direction = position.w < 0.0;
+    vec3 away = direction ? position.xyz : position.xyz - world_from_eye[3].xyz;
+    vec3 p = away * mat3(world_from_eye); // the transposed rotation
+    // written so that what is not a number is out: the motion of an object once scaled to nothing is none
+    if (any(isnan(p)) || any(isinf(p)) || (direction ? p.z >= 0.0 : -p.z < frame.near_m))
+        return nowhere;
+    vec2 size = vec2(frame.width, frame.height);
+    vec2 at = floor(view_pixel(frame.eyes[source.z], size, p));
+    if (!all(greaterThanEqual(at, vec2(0.0))) || !all(lessThan(at, size)))
+        return nowhere;
+    if (view_eccentricity_deg(frame.eyes[source.z], view_ray(frame.eyes[source.z], size, at + 0.5)) < push.drop_deg)
+        return nowhere;
+    return landing(true, at, direction ? 0.0 : frame.near_m / -p.z);
+}
