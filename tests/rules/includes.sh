@@ -28,7 +28,7 @@ BEGIN {
     may["analysis/stats"] = "analysis/stats/"
     may["analysis/image"] = "analysis/image/"
     may["analysis/tools"] = may["analysis/report"] = "analysis/ studies/store/ studies/engine/"
-    app = "app/ stimuli/ studies/ renderer/renderer.h renderer/frame.h renderer/mode.h renderer/settings.h analysis/image/"
+    app = "app/ stimuli/ studies/ renderer/renderer.h renderer/frame.h renderer/mode.h renderer/settings.h analysis/image/ analysis/stats/quantile.h"
     # outside libraries: who may name them
     only["vulkan/"] = "app/display/window.c"
     only["volk.h"] = "renderer/gpu/"
