@@ -451,6 +451,12 @@ bool renderer_read_screen(struct renderer *r, int eye, uint8_t *out_rgba)
     return r->screen.used && read_image(r, &r->screen.image, 0, (uint32_t)eye * r->width, 4, out_rgba);
 }
 
+bool renderer_read_motion(struct renderer_option *o, int eye, float *out_xyzw)
+{
+    return o->drawn && o->result.motion &&
+           read_image(o->renderer, o->result.motion, (uint32_t)eye, 0, 4 * sizeof(float), (uint8_t *)out_xyzw);
+}
+
 bool renderer_read_redraw_map(struct renderer_option *o, int eye, uint8_t *out)
 {
     const size_t count = (size_t)o->renderer->width * o->renderer->height;

@@ -25,6 +25,7 @@ struct difference {
 struct request {
     struct mode_choice choice;
     struct mode_choice against; // mode NULL: none
+    struct renderer_settings settings;
     const char *scene;
     const char *out; // NULL: no pictures
     const char *device;
@@ -44,6 +45,8 @@ enum {
     OPTION_FOV,
     OPTION_START,
     OPTION_STILL,
+    OPTION_SSAO,
+    OPTION_TAA,
     OPTION_REST,
     OPTION_ALL,
     OPTION_REDRAW_MAP,
@@ -65,6 +68,8 @@ static const struct option_spec specs[] = {
                      "where the eyes look; degrees, right and up positive (centre)"},
     [OPTION_FOV] = {"fov", "DEG", "vertical field of view (100)"},
     [OPTION_START] = {"start", "S", "where on the path to begin, seconds (0)"},
+    [OPTION_SSAO] = {"ssao", NULL, "with ambient occlusion"},
+    [OPTION_TAA] = {"taa", NULL, "with temporal antialiasing"},
     [OPTION_STILL] = {"still", NULL, "keep the camera where it starts"},
     [OPTION_REST] = {"rest", NULL, "keep moving objects at rest"},
     [OPTION_ALL] = {"all", NULL, "write every frame, not only the last"},
@@ -94,6 +99,12 @@ static const char *wrong_value(int option, const char *value, struct request *r)
 static void take_flag(int option, struct request *r)
 {
     switch (option) {
+    case OPTION_SSAO:
+        r->settings.ssao = true;
+        break;
+    case OPTION_TAA:
+        r->settings.taa = true;
+        break;
     case OPTION_STILL:
         r->walk.still = true;
         break;
@@ -274,9 +285,9 @@ static bool render(const struct request *r, const struct scene *scene)
     struct renderer_scene *uploaded = renderer ? renderer_scene_create(renderer, scene) : NULL;
     struct drawing drawing = {0};
     if (uploaded)
-        drawing.option = renderer_option_create(renderer, uploaded, &r->choice, NULL);
+        drawing.option = renderer_option_create(renderer, uploaded, &r->choice, &r->settings);
     if (drawing.option && r->against.mode)
-        drawing.against = renderer_option_create(renderer, uploaded, &r->against, NULL);
+        drawing.against = renderer_option_create(renderer, uploaded, &r->against, &r->settings);
     bool ok = drawing.option && (drawing.against || !r->against.mode);
     if (ok && r->explain) {
         char text[10240];

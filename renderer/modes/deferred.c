@@ -20,7 +20,8 @@ static bool init_geometry(struct deferred *d, const struct deferred_desc *desc)
                                    .frame = s->frame,
                                    .width = s->width,
                                    .height = s->height,
-                                   .ids = s->scene->scene->moving_count && (desc->ids || d->has_taa),
+                                   .ids = s->scene->scene->moving_count &&
+                                          (desc->ids || d->has_taa || d->has_motion),
                                    .redraw_map = view_of(desc->redraw_map)};
     for (int i = 0; desc->moving_everywhere && i < 2; i++)
         gbuffer.position[i] = view_of(desc->position[i]);
@@ -92,18 +93,34 @@ static bool init_taa(struct deferred *d, const struct deferred_desc *desc)
     return taa_init(&d->taa, &taa);
 }
 
+static bool init_motion(struct deferred *d, const struct deferred_desc *desc)
+{
+    const struct mode_setup *s = desc->setup;
+    const struct motion_desc motion = {.gpu = s->gpu,
+                                       .scene = s->scene,
+                                       .frame = s->frame,
+                                       .width = s->width,
+                                       .height = s->height,
+                                       .depth = d->gbuffer.depth.view,
+                                       .id = d->gbuffer.id.view};
+    return motion_init(&d->motion, &motion);
+}
+
 bool deferred_init(struct deferred *d, const struct deferred_desc *desc)
 {
     *d = (struct deferred){.colour = {desc->colour[0], desc->colour[1]},
                            .has_ssao = desc->setup->settings.ssao,
                            .has_taa = desc->setup->settings.taa,
+                           .has_motion = desc->setup->settings.motion && !desc->redraw_map,
                            .has_map = desc->redraw_map != NULL};
     return init_geometry(d, desc) && (!d->has_ssao || init_ssao(d, desc)) &&
-           (desc->own_shade || init_light(d, desc)) && (!d->has_taa || init_taa(d, desc));
+           (desc->own_shade || init_light(d, desc)) && (!d->has_taa || init_taa(d, desc)) &&
+           (!d->has_motion || init_motion(d, desc));
 }
 
 void deferred_finish(struct deferred *d)
 {
+    motion_finish(&d->motion);
     taa_finish(&d->taa);
     tonemap_finish(&d->tonemap);
     shade_finish(&d->shade);
@@ -130,6 +147,8 @@ void deferred_explain(const struct deferred *d, const struct mode_setup *setup)
                  d->colour[1] ? " of this and the last frame" : "");
     if (d->has_taa)
         mode_explain(e, taa_memory(&d->taa), "filtered pictures of this and the last frame, because TAA is on");
+    if (d->has_motion)
+        mode_explain(e, d->motion.image.bytes, "motion vectors, because they are measured");
 }
 
 void deferred_geometry(struct deferred *d, struct gpu_frame *f, enum gbuffer_extent extent, uint32_t source)
@@ -164,6 +183,15 @@ void deferred_shade(struct deferred *d, struct gpu_frame *f, uint32_t target)
     else
         tonemap_record(&d->tonemap, cmd, target);
     gpu_timer_end(f);
+}
+
+const struct gpu_image *deferred_motion(struct deferred *d, struct gpu_frame *f)
+{
+    if (!d->has_motion)
+        return NULL;
+    motion_record(&d->motion, gpu_timer_begin(f, "motion vectors"));
+    gpu_timer_end(f);
+    return &d->motion.image;
 }
 
 const struct gpu_image *deferred_show(struct deferred *d, struct gpu_frame *f, uint32_t source, bool history)

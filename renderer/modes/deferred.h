@@ -8,6 +8,7 @@
 #include "renderer/modes/room.h"
 #include "renderer/passes/cull/cull.h"
 #include "renderer/passes/gbuffer/gbuffer.h"
+#include "renderer/passes/motion/motion.h"
 #include "renderer/passes/redraw/redraw.h"
 #include "renderer/passes/shade/shade.h"
 #include "renderer/passes/ssao/ssao.h"
@@ -21,8 +22,9 @@ struct deferred {
     struct shade shade;
     struct tonemap tonemap;
     struct taa taa;
+    struct motion motion;
     const struct gpu_image *colour[2]; // the mode's own
-    bool has_ssao, has_taa, has_map;
+    bool has_ssao, has_taa, has_motion, has_map;
 };
 
 struct deferred_desc {
@@ -47,6 +49,8 @@ void deferred_geometry(struct deferred *deferred, struct gpu_frame *frame, enum 
 void deferred_occlusion(struct deferred *deferred, struct gpu_frame *frame, uint32_t source);
 // Shading and tone mapping into colour `target`; with a redraw map from its list of tiles.
 void deferred_shade(struct deferred *deferred, struct gpu_frame *frame, uint32_t target);
+// The motion vectors of a mode that draws everything, where they are on; else NULL.
+const struct gpu_image *deferred_motion(struct deferred *deferred, struct gpu_frame *frame);
 // The picture to show: colour `source`, or with TAA what comes of it.
 const struct gpu_image *deferred_show(struct deferred *deferred, struct gpu_frame *frame, uint32_t source,
                                       bool history);

@@ -37,6 +37,7 @@ struct mode_record {
 struct mode_result {
     const struct gpu_image *colour;     // rgba8, sRGB-encoded, two layers, layout GENERAL
     const struct gpu_image *redraw_map; // r8 uint, GENERAL; NULL: everything was drawn
+    const struct gpu_image *motion;     // rgba32f, GENERAL; NULL: not kept
     bool counts_shaded;                 // the kernels counted shaded_px; otherwise it is every pixel
 };
 

@@ -55,7 +55,8 @@ static bool record(struct mode_state *s, const struct mode_record *record)
     deferred_geometry(&s->deferred, f, GBUFFER_ALL, 0);
     deferred_occlusion(&s->deferred, f, 0);
     deferred_shade(&s->deferred, f, 0);
-    *record->result = (struct mode_result){.colour = deferred_show(&s->deferred, f, 0, record->history)};
+    *record->result = (struct mode_result){.colour = deferred_show(&s->deferred, f, 0, record->history),
+                                           .motion = deferred_motion(&s->deferred, f)};
     return true;
 }
 

@@ -36,7 +36,8 @@ vec3 shade_pixel(ivec3 pixel, bool wanted, uvec2 corner)
         measure_tile(lit, distance);
         for (uint first = 0u; first < frame.light_count && farthest_bits != 0u; first += light_chunk) {
             list_lights(first, uint(pixel.z), corner);
-            for (uint word = 0u; lit && word < light_words; word++) {
+            uint left = min(light_chunk, frame.light_count - first);
+            for (uint word = 0u; lit && 32u * word < left; word++) {
                 for (uint bits = light_mask[word]; bits != 0u; bits &= bits - 1u)
                     radiance += point_light(s, position, lights[first + 32u * word + uint(findLSB(bits))]);
             }
