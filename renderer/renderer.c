@@ -3,6 +3,7 @@
 #include "renderer/gpu/frame.h"
 #include "renderer/modes/room.h"
 #include "renderer/passes/screen/screen.h"
+#include "renderer/passes/shadow/shadow.h"
 #include "renderer/scene/scene_gpu.h"
 
 #include <math.h>
@@ -24,6 +25,7 @@ struct renderer {
 struct renderer_scene {
     struct renderer *renderer;
     struct scene_gpu *gpu;
+    struct shadow shadow; // of the sun; without a map where there is none
 };
 
 struct renderer_option {
@@ -113,9 +115,9 @@ struct renderer_scene *renderer_scene_create(struct renderer *r, const struct sc
         return NULL;
     s->renderer = r;
     s->gpu = scene_gpu_create(r->gpu, scene);
-    if (s->gpu)
+    if (s->gpu && shadow_init(&s->shadow, r->gpu, s->gpu))
         return s;
-    free(s);
+    renderer_scene_destroy(s);
     return NULL;
 }
 
@@ -123,8 +125,20 @@ void renderer_scene_destroy(struct renderer_scene *scene)
 {
     if (!scene)
         return;
+    shadow_finish(&scene->shadow);
     scene_gpu_destroy(scene->gpu);
     free(scene);
+}
+
+static void explain_shadow(struct renderer_option *o)
+{
+    const struct shadow *s = &o->scene->shadow;
+    if (s->map.view)
+        mode_explain(&o->explanation, s->map.bytes,
+                     "sun shadows of what stands still, drawn once with the scene, %ux%u texels of %.1f cm",
+                     s->map.width, s->map.height, 100 * s->texel_m);
+    else
+        mode_explain(&o->explanation, 0, "no sun shadows, there is no sun or nothing stands still");
 }
 
 struct renderer_option *renderer_option_create(struct renderer *r, struct renderer_scene *scene,
@@ -146,6 +160,7 @@ struct renderer_option *renderer_option_create(struct renderer *r, struct render
     const VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
     const struct mode_setup setup = {.gpu = r->gpu,
                                      .scene = scene->gpu,
+                                     .shadow_map = scene->shadow.map.view,
                                      .width = r->width,
                                      .height = r->height,
                                      .values = choice->values,
@@ -153,6 +168,7 @@ struct renderer_option *renderer_option_create(struct renderer *r, struct render
                                      .frame = &o->constants,
                                      .counters = &o->counters,
                                      .explanation = &o->explanation};
+    explain_shadow(o);
     if (gpu_buffer_create(r->gpu, "frame constants", sizeof(struct shared_frame), usage, GPU_HOST,
                           &o->constants) &&
         gpu_buffer_create(r->gpu, "counters", sizeof(struct shared_counters), usage, GPU_HOST, &o->counters) &&
@@ -254,6 +270,7 @@ static void fill_constants(struct renderer_option *o, const struct frame *frame)
                                  .near_m = (float)VIEWING_NEAR_M,
                                  .moving = frame->moving};
     scene_gpu_constants(scene, out);
+    shadow_constants(&o->scene->shadow, scene->origin, out);
     for (int eye = 0; eye < EYES; eye++)
         fill_eye(&out->eyes[eye], &frame->eyes[eye], scene->origin);
     store3(out->origin_shift, dvec3_sub(o->last_origin, scene->origin));

@@ -57,6 +57,7 @@ static bool create_passes(struct mode_state *s, const struct mode_setup *setup)
     const struct shade_desc shade = {.gpu = s->gpu,
                                      .frame = setup->frame,
                                      .lights = &setup->scene->lights,
+                                     .shadow_map = setup->shadow_map,
                                      .width = setup->width,
                                      .height = setup->height,
                                      .base = s->gbuffer.base.view,
