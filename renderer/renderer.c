@@ -3,6 +3,7 @@
 #include "renderer/gpu/frame.h"
 #include "renderer/modes/room.h"
 #include "renderer/passes/screen/screen.h"
+#include "renderer/passes/shadow/shadow.h"
 #include "renderer/scene/scene_gpu.h"
 
 #include <math.h>
@@ -24,6 +25,7 @@ struct renderer {
 struct renderer_scene {
     struct renderer *renderer;
     struct scene_gpu *gpu;
+    struct shadow shadow; // of the sun; without a map where there is none
 };
 
 struct renderer_option {
@@ -115,9 +117,9 @@ struct renderer_scene *renderer_scene_create(struct renderer *r, const struct sc
         return NULL;
     s->renderer = r;
     s->gpu = scene_gpu_create(r->gpu, scene);
-    if (s->gpu)
+    if (s->gpu && shadow_init(&s->shadow, r->gpu, s->gpu))
         return s;
-    free(s);
+    renderer_scene_destroy(s);
     return NULL;
 }
 
@@ -125,8 +127,20 @@ void renderer_scene_destroy(struct renderer_scene *scene)
 {
     if (!scene)
         return;
+    shadow_finish(&scene->shadow);
     scene_gpu_destroy(scene->gpu);
     free(scene);
+}
+
+static void explain_shadow(struct renderer_option *o)
+{
+    const struct shadow *s = &o->scene->shadow;
+    if (s->map.view)
+        mode_explain(&o->explanation, s->map.bytes,
+                     "sun shadows of what stands still, drawn once with the scene, %ux%u texels of %.1f cm",
+                     s->map.width, s->map.height, 100 * s->texel_m);
+    else
+        mode_explain(&o->explanation, 0, "no sun shadows, there is no sun or nothing stands still");
 }
 
 struct renderer_option *renderer_option_create(struct renderer *r, struct renderer_scene *scene,
@@ -149,6 +163,7 @@ struct renderer_option *renderer_option_create(struct renderer *r, struct render
     const VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
     const struct mode_setup setup = {.gpu = r->gpu,
                                      .scene = scene->gpu,
+                                     .shadow_map = scene->shadow.map.view,
                                      .width = r->width,
                                      .height = r->height,
                                      .values = choice->values,
@@ -156,6 +171,7 @@ struct renderer_option *renderer_option_create(struct renderer *r, struct render
                                      .frame = &o->constants,
                                      .counters = &o->counters,
                                      .explanation = &o->explanation};
+    explain_shadow(o);
     if (gpu_buffer_create(r->gpu, "frame constants", sizeof(struct shared_frame), usage, GPU_HOST,
                           &o->constants) &&
         gpu_buffer_create(r->gpu, "counters", sizeof(struct shared_counters), usage, GPU_HOST, &o->counters) &&
@@ -287,6 +303,7 @@ static void fill_constants(struct renderer_option *o, const struct frame *frame)
                                  .near_m = (float)VIEWING_NEAR_M,
                                  .moving = frame->moving};
     scene_gpu_constants(scene, out);
+    shadow_constants(&o->scene->shadow, scene->origin, out);
     double jitter[2] = {0, 0};
     for (int axis = 0; o->settings.taa && axis < 2; axis++)
         jitter[axis] = halton(frame->number % 8 + 1, axis ? 3 : 2) - 0.5;

@@ -74,6 +74,7 @@ struct scene_material {
     float alpha_cutoff; // used where alpha_mask
     bool alpha_mask;
     bool double_sided;
+    bool sky_in_alpha; // vertex alpha is the share of the sky that a surface sees, not opacity
     struct scene_texture_use use[SCENE_SLOTS];
 };
 

@@ -183,6 +183,7 @@ struct gpu_raster_desc {
     uint32_t colour_count;
     VkFormat depth_format; // 0: none
     VkCompareOp depth_compare;
+    float slope_bias;         // depth added per depth slope a pixel; 0: none
     const int32_t *constants; // for both stages
     uint32_t constant_count;
 };
@@ -193,6 +194,9 @@ VkPipeline gpu_raster_create(struct gpu *gpu, const struct gpu_raster_desc *desc
 // Mip levels are blended where `min` is linear. anisotropy 1: none.
 VkSampler gpu_sampler_create(struct gpu *gpu, VkFilter min, VkFilter mag, VkSamplerAddressMode u,
                              VkSamplerAddressMode v, float anisotropy);
+// Compares depths, LESS_OR_EQUAL, and blends the four answers where the device can; beyond the image everything
+// passes.
+VkSampler gpu_sampler_create_compare(struct gpu *gpu);
 // Unfiltered and clamped, for images read pixel by pixel.
 VkSampler gpu_sampler_create_plain(struct gpu *gpu);
 

@@ -209,6 +209,8 @@ VkPipeline gpu_raster_create(struct gpu *gpu, const struct gpu_raster_desc *desc
             &(VkPipelineRasterizationStateCreateInfo){
                 .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
                 .polygonMode = VK_POLYGON_MODE_FILL,
+                .depthBiasEnable = desc->slope_bias != 0,
+                .depthBiasSlopeFactor = desc->slope_bias,
                 .lineWidth = 1},
         .pMultisampleState =
             &(VkPipelineMultisampleStateCreateInfo){
@@ -253,6 +255,26 @@ VkSampler gpu_sampler_create(struct gpu *gpu, VkFilter min, VkFilter mag, VkSamp
         .anisotropyEnable = anisotropy > 1,
         .maxAnisotropy = anisotropy,
         .maxLod = VK_LOD_CLAMP_NONE,
+    };
+    VkSampler sampler = VK_NULL_HANDLE;
+    return VK(gpu, vkCreateSampler(gpu->device, &info, NULL, &sampler)) ? sampler : VK_NULL_HANDLE;
+}
+
+VkSampler gpu_sampler_create_compare(struct gpu *gpu)
+{
+    VkFormatProperties format;
+    vkGetPhysicalDeviceFormatProperties(gpu->physical, VK_FORMAT_D32_SFLOAT, &format);
+    const bool blends = format.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
+    const VkSamplerCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
+        .magFilter = blends ? VK_FILTER_LINEAR : VK_FILTER_NEAREST,
+        .minFilter = blends ? VK_FILTER_LINEAR : VK_FILTER_NEAREST,
+        .addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER,
+        .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER,
+        .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER,
+        .compareEnable = VK_TRUE,
+        .compareOp = VK_COMPARE_OP_LESS_OR_EQUAL,
+        .borderColor = VK_BORDER_COLOR_FLOAT_OPAQUE_WHITE,
     };
     VkSampler sampler = VK_NULL_HANDLE;
     return VK(gpu, vkCreateSampler(gpu->device, &info, NULL, &sampler)) ? sampler : VK_NULL_HANDLE;

@@ -52,6 +52,7 @@ static bool init_light(struct deferred *d, const struct deferred_desc *desc)
     const struct shade_desc shade = {.gpu = s->gpu,
                                      .frame = s->frame,
                                      .lights = &s->scene->lights,
+                                     .shadow_map = s->shadow_map,
                                      .width = s->width,
                                      .height = s->height,
                                      .base = d->gbuffer.base.view,

@@ -17,6 +17,7 @@ struct mode_explanation {
 struct mode_setup {
     struct gpu *gpu;
     const struct scene_gpu *scene;
+    VkImageView shadow_map; // of the sun, for shade_desc; null: the scene has no sun
     uint32_t width, height; // per eye
     const double *values;   // of the mode's parameters, in table order
     struct renderer_settings settings;

@@ -16,7 +16,8 @@ static bool plain_uv(const struct scene_material *m)
 
 static uint32_t features_of(const struct scene_material *m)
 {
-    uint32_t features = (m->alpha_mask ? SCENE_GPU_MASK : 0) | (plain_uv(m) ? SCENE_GPU_PLAIN_UV : 0);
+    uint32_t features = (m->alpha_mask ? SCENE_GPU_MASK : 0) | (plain_uv(m) ? SCENE_GPU_PLAIN_UV : 0) |
+                        (m->sky_in_alpha ? SCENE_GPU_SKY : 0);
     for (uint32_t slot = 0; slot < SCENE_SLOTS; slot++)
         features |= m->use[slot].texture >= 0 ? 1u << slot : 0;
     bool glows = m->emissive[0] > 0 || m->emissive[1] > 0 || m->emissive[2] > 0;

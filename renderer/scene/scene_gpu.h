@@ -14,7 +14,8 @@ enum {
     SCENE_GPU_MASK = 1 << SCENE_SLOTS,           // alpha test
     SCENE_GPU_EMISSIVE = 1 << (SCENE_SLOTS + 1), // glows, with or without a texture
     SCENE_GPU_PLAIN_UV = 1 << (SCENE_SLOTS + 2), // every texture reads the first set as it is
-    SCENE_GPU_FEATURES = SCENE_SLOTS + 3,
+    SCENE_GPU_SKY = 1 << (SCENE_SLOTS + 3),      // vertex alpha occludes the sky
+    SCENE_GPU_FEATURES = SCENE_SLOTS + 4,
     // bits 0..SCENE_SLOTS-1: the texture slot is used
 };
 

@@ -47,7 +47,8 @@ struct shared_frame {
     SHARED_VEC4(sky_zenith);      // cd/m^2, rgb
     SHARED_VEC4(sky_horizon);
     SHARED_VEC4(sky_ground);
-    SHARED_VEC4(origin_shift); // old origin minus new origin: added to positions kept from the last frame
+    SHARED_MAT4(shadow_from_world); // texture coordinates and depth in the sun's map
+    SHARED_VEC4(origin_shift);      // old origin minus new origin: added to positions kept from the last frame
     SHARED_UINT width;
     SHARED_UINT height;
     SHARED_UINT light_count;
@@ -56,6 +57,7 @@ struct shared_frame {
     SHARED_FLOAT near_m;
     SHARED_FLOAT exposure; // 0.18 / luminance
     SHARED_UINT moving;    // 0: moving ids are ignored, objects stand still
+    SHARED_FLOAT shadow_texel_m;
 };
 
 // A submodel of one instance: what is culled and drawn.

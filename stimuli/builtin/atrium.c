@@ -85,13 +85,11 @@ static void build(const struct atrium *atrium)
     atrium_add_fountain(atrium);
     atrium_add_plants(atrium);
     struct visibility_desc light = {
-        .sun = &scene->sun,
         .sky = &scene->sky,
         .directions = 28,
         .open_material = atrium->material[ATRIUM_COURT],
         .below = {4.2f, 3.5f, 2.6f},
         .bounce = {0.95f, 0.82f, 0.66f},
-        .edge_m = 0.1f,
         .lift_m = 0.1f,
     };
     if (!maker->failed && !visibility_bake(maker, &light))

@@ -93,6 +93,7 @@ uint32_t maker_material(struct maker *maker, const struct maker_material_desc *d
         .alpha_cutoff = 0.5f,
         .alpha_mask = desc->alpha_mask,
         .double_sided = desc->double_sided,
+        .sky_in_alpha = true,
     };
     snprintf(m->name, sizeof m->name, "%s", desc->name);
     for (int slot = 0; slot < SCENE_SLOTS; slot++)
@@ -155,7 +156,8 @@ static struct scene_vertex pack(const struct maker_vertex *from)
     struct scene_vertex v = {
         .position = {from->position[0], from->position[1], from->position[2]},
         .uv = {{from->uv[0], from->uv[1]}, {from->uv[0], from->uv[1]}},
-        .colour = {unorm8(from->colour[0]), unorm8(from->colour[1]), unorm8(from->colour[2]), 255},
+        .colour = {unorm8(from->colour[0]), unorm8(from->colour[1]), unorm8(from->colour[2]),
+                   unorm8(1 - from->hidden)},
     };
     scene_encode_normal(from->normal, v.normal);
     for (int i = 0; i < 3; i++)

@@ -20,6 +20,7 @@ struct maker_vertex {
     float tangent[4]; // w 0: made at the end of the mesh
     float uv[2];
     float colour[3]; // linear, 0..1
+    float hidden;    // share of the sky that does not reach it, 0..1
 };
 
 struct maker_bucket {

@@ -1,7 +1,6 @@
-// The ground as columns of cells, with the light that houses and trees leave it.
+// The ground as columns of cells, with the sky that houses and trees leave it.
 #include "stimuli/builtin/random.h"
 #include "stimuli/builtin/town_parts.h"
-#include "stimuli/builtin/visibility.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -66,24 +65,6 @@ bool town_make_tops(struct town *town)
     return true;
 }
 
-static float sun_share(const struct town *town, float x, float y, float z)
-{
-    const struct dvec3 d = town->maker->scene->sun.direction;
-    float level = (float)hypot(d.x, d.z), slope = (float)d.y / level, open = 0;
-    for (int ray = 0; ray < 3; ray++) {
-        float turn = 0.04f * (float)(ray - 1), tilt = slope * (1 + 0.05f * (float)(ray - 1));
-        float dx = (float)d.x / level - turn * (float)d.z / level,
-              dz = (float)d.z / level + turn * (float)d.x / level;
-        bool free_way = true;
-        for (float t = 0.45f; t < 16 && free_way; t += 0.45f) {
-            const float *top = top_at(town, x + dx * t, z + dz * t);
-            free_way = top == NULL || *top < y + 0.05f + t * tilt;
-        }
-        open += free_way;
-    }
-    return open / 3;
-}
-
 static float sky_share(const struct town *town, float x, float y, float z)
 {
     static const float reach[5] = {0.4f, 0.9f, 1.8f, 3.6f, 7.0f};
@@ -100,23 +81,16 @@ static float sky_share(const struct town *town, float x, float y, float z)
     return open / 8;
 }
 
-// Light that reaches a level surface, as a share of what the renderer computes without shadows.
-static void ground_light(const struct town *town, float x, float y, float z, float out[3])
+// Share of the sky that does not reach a level surface; a quarter of its light comes back from what hides it.
+static float hidden_share(const struct town *town, float x, float y, float z)
 {
-    const struct scene *s = town->maker->scene;
-    float sun = sun_share(town, x, y, z), open = sky_share(town, x, y, z), sky[3];
-    visibility_sky(&s->sky, 1, sky);
-    for (int k = 0; k < 3; k++) {
-        float direct = s->sun.illuminance[k] * (float)s->sun.direction.y / PI;
-        float ambient = sky[k] * (0.25f + 0.75f * open);
-        out[k] = (ambient + direct * sun) / (sky[k] + direct);
-    }
+    return 0.75f * (1 - sky_share(town, x, y, z));
 }
 
 struct lattice {
     float height;
     uint32_t material, vertex; // vertex + 1
-    float light[3];
+    float hidden;
     bool lit;
 };
 
@@ -139,17 +113,15 @@ static uint32_t top_vertex(struct ground *g, int32_t i, int32_t j, float height,
         return l->vertex - 1;
     if (!same) {
         l->height = height;
-        if (g->fine)
-            ground_light(g->town, x, height, z, l->light);
-        else
-            l->light[0] = l->light[1] = l->light[2] = 1;
+        l->hidden = g->fine ? hidden_share(g->town, x, height, z) : 0;
         l->lit = true;
     }
     struct maker_vertex v = {.position = {x, height, z},
                              .normal = {0, 1, 0},
                              .tangent = {1, 0, 0, 1},
                              .uv = {x / kind->tile_m, z / kind->tile_m},
-                             .colour = {l->light[0], l->light[1], l->light[2]}};
+                             .colour = {1, 1, 1},
+                             .hidden = l->hidden};
     l->material = kind->top;
     l->vertex = maker_vertex(g->town->maker, kind->top, &v) + 1;
     return l->vertex - 1;
@@ -184,14 +156,15 @@ static void add_side(struct ground *g, int32_t i, int32_t j, int32_t di, int32_t
                                  .normal = {(float)di, 0, (float)dj},
                                  .tangent = {rx, 0, rz, 1},
                                  .uv = {(x * rx + z * rz) / 2, -y / 2},
-                                 .colour = {light, light, light}};
+                                 .colour = {1, 1, 1},
+                                 .hidden = 1 - light};
         corner[k] = maker_vertex(g->town->maker, material, &v);
     }
     maker_triangle(g->town->maker, material, corner[0], corner[1], corner[3]);
     maker_triangle(g->town->maker, material, corner[0], corner[3], corner[2]);
 }
 
-// Two crossed sheets, each with both its sides, lit like the ground they stand on.
+// Two crossed sheets, each with both its sides, under the sky of the ground they stand on.
 static void add_tuft(struct ground *g, float x, float y, float z, uint64_t id, float sparse)
 {
     struct town *town = g->town;
@@ -205,10 +178,10 @@ static void add_tuft(struct ground *g, float x, float y, float z, uint64_t id, f
     g->quads += 4;
     if (g->count_only)
         return;
-    float size = top != NULL && *top > y + 0.2f ? 0.18f : random_range(seed + 4, id, 0.4f, 0.75f), light[3];
+    float size = top != NULL && *top > y + 0.2f ? 0.18f : random_range(seed + 4, id, 0.4f, 0.75f);
     float turn = random_range(seed + 5, id, 0, PI);
     uint32_t material = town->kinds[flower ? TOWN_FLOWER : TOWN_TUFT].side;
-    ground_light(town, x, y, z, light);
+    float hidden = hidden_share(town, x, y, z);
     for (int sheet = 0; sheet < 4; sheet++) {
         float a = turn + (float)sheet * PI / 2, dx = 0.5f * size * cosf(a), dz = 0.5f * size * sinf(a);
         uint32_t corner[4];
@@ -218,7 +191,8 @@ static void add_tuft(struct ground *g, float x, float y, float z, uint64_t id, f
                                      .normal = {0, 1, 0},
                                      .tangent = {cosf(a), 0, sinf(a), 1},
                                      .uv = {0.5f + 0.5f * side, 1 - up},
-                                     .colour = {light[0] * shade, light[1] * shade, light[2] * shade}};
+                                     .colour = {shade, shade, shade},
+                                     .hidden = hidden};
             corner[k] = maker_vertex(town->maker, material, &v);
         }
         maker_triangle(town->maker, material, corner[0], corner[1], corner[3]);
@@ -258,7 +232,7 @@ uint32_t town_add_ground(struct town *town, const struct town_block *block, bool
     int32_t far_i = abs(block->i), far_j = abs(block->j);
     float cell = fine ? town->ground_cell : town->country_cell;
     if (fine && town->wanted >= 1000000 && far_i <= 1 && far_j <= 1)
-        cell = 0.5f; // sharper shadows where the camera goes
+        cell = 0.5f; // finer light where the camera goes
     struct ground g = {.town = town, .block = block, .cell = cell, .fine = fine, .count_only = count_only};
     g.cells = (int32_t)lrintf(TOWN_PERIOD / cell);
     g.x0 = ((float)block->i - 0.5f) * TOWN_PERIOD;

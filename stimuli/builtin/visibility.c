@@ -4,13 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define PI 3.14159265358979f
-
-enum {
-    SKY_MAP = 272,  // texels a side, about 0.13 m in a court of 33 m
-    SUN_MAP = 2048, // about 0.016 m
-    SUN_TAPS = 12,
-};
+enum { SKY_MAP = 272 }; // texels a side, about 0.13 m in a court of 33 m
 
 struct depth_map {
     float right[3], up[3], towards[3]; // orthonormal; towards the light
@@ -153,7 +147,6 @@ static void direction_of(uint32_t i, uint32_t count, float out[3])
 
 struct light_sum {
     float open[3], all;
-    float sun;
 };
 
 static float facing(const struct scene_material *material, const struct maker_vertex *v, const float towards[3])
@@ -194,44 +187,22 @@ static void add_sky(struct light_sum *sums, const struct maker *maker, const str
     }
 }
 
-static void add_sun(struct light_sum *sums, const struct maker *maker, const struct depth_map *map,
-                    const struct visibility_desc *desc)
+static float brightness(const float c[3])
 {
-    float reach = desc->edge_m * map->scale;
-    for (uint32_t m = 0, s = 0; m < MAKER_MATERIALS; m++) {
-        const struct maker_bucket *b = &maker->buckets[m];
-        for (uint32_t i = 0; i < b->vertex_count; i++, s++) {
-            float c = dot(b->vertices[i].normal, map->towards), p[3], at[3];
-            if (c <= 0 && !maker->scene->materials[m].double_sided)
-                continue;
-            lift(&b->vertices[i], map->towards, 0.03f, p);
-            to_map(map, p, at);
-            uint32_t open = 0;
-            for (uint32_t k = 0; k < SUN_TAPS; k++) {
-                float r = reach * sqrtf(((float)k + 0.5f) / SUN_TAPS), a = (float)k * 2.39996323f;
-                open += open_at(map, at[0] + r * cosf(a), at[1] + r * sinf(a), at[2] + 0.02f);
-            }
-            sums[s].sun = (float)open / SUN_TAPS;
-        }
-    }
+    return 0.2126f * c[0] + 0.7152f * c[1] + 0.0722f * c[2]; // ITU-R BT.709
 }
 
-static void write_colours(const struct light_sum *sums, const struct maker *maker,
-                          const struct visibility_desc *desc, const float towards[3])
+static void write_shares(const struct light_sum *sums, const struct maker *maker,
+                         const struct visibility_desc *desc)
 {
     for (uint32_t m = 0, s = 0; m < MAKER_MATERIALS; m++) {
         struct maker_bucket *b = (struct maker_bucket *)&maker->buckets[m];
-        bool thin = maker->scene->materials[m].double_sided;
         for (uint32_t i = 0; i < b->vertex_count; i++, s++) {
-            struct maker_vertex *v = &b->vertices[i];
-            float full[3], c = dot(v->normal, towards);
-            c = thin ? fabsf(c) : most(c, 0);
-            visibility_sky(desc->sky, v->normal[1], full);
-            for (int k = 0; k < 3; k++) {
-                float sun = desc->sun->illuminance[k] * c / PI;
-                float arrives = sums[s].all > 0 ? sums[s].open[k] / sums[s].all : full[k];
-                v->colour[k] *= least((arrives + sun * sums[s].sun) / (full[k] + sun), 1);
-            }
+            float full[3];
+            visibility_sky(desc->sky, b->vertices[i].normal[1], full);
+            if (sums[s].all > 0)
+                b->vertices[i].hidden =
+                    1 - least(brightness(sums[s].open) / (sums[s].all * brightness(full)), 1);
         }
     }
 }
@@ -243,7 +214,7 @@ bool visibility_bake(struct maker *maker, const struct visibility_desc *desc)
         vertices += maker->buckets[m].vertex_count;
         largest = maker->buckets[m].vertex_count > largest ? maker->buckets[m].vertex_count : largest;
     }
-    struct depth_map map = {.size = SKY_MAP, .depth = malloc(sizeof(float) * SUN_MAP * SUN_MAP)};
+    struct depth_map map = {.size = SKY_MAP, .depth = malloc(sizeof(float) * SKY_MAP * SKY_MAP)};
     float *projected = malloc(sizeof(float) * 3 * largest);
     struct light_sum *sums = calloc(vertices + 1, sizeof *sums);
     bool ok = map.depth != NULL && projected != NULL && sums != NULL;
@@ -254,13 +225,7 @@ bool visibility_bake(struct maker *maker, const struct visibility_desc *desc)
             draw_map(&map, maker, towards, desc->open_material, projected);
             add_sky(sums, maker, &map, desc);
         }
-        map.size = SUN_MAP;
-        towards[0] = (float)desc->sun->direction.x;
-        towards[1] = (float)desc->sun->direction.y;
-        towards[2] = (float)desc->sun->direction.z;
-        draw_map(&map, maker, towards, desc->open_material, projected);
-        add_sun(sums, maker, &map, desc);
-        write_colours(sums, maker, desc, towards);
+        write_shares(sums, maker, desc);
     }
     free(sums);
     free(projected);

@@ -184,9 +184,8 @@ static uint32_t lattice_vertex(struct layer *l, uint32_t key, int32_t u, int32_t
     for (int k = 0; k < 3; k++)
         vertex.position[k] = l->model->origin[k] + (float)point[k] * l->model->cell_m;
     set_texture_frame(l, &vertex, kind->tile_m);
-    float light = (0.30f + 0.70f * open_share(l, point)) * corner_light[shading];
-    for (int k = 0; k < 3; k++)
-        vertex.colour[k] = light;
+    vertex.colour[0] = vertex.colour[1] = vertex.colour[2] = 1;
+    vertex.hidden = 1 - (0.30f + 0.70f * open_share(l, point)) * corner_light[shading];
     uint32_t made = maker_vertex(l->maker, material_of(l, kind), &vertex);
     *last = tag << 32 | made;
     return made;

@@ -1,8 +1,8 @@
 // Models made of equal cubes, and their surfaces as quads.
 //
 // Use: voxel_create -> voxel_fill, voxel_put -> voxel_mesh into the maker's mesh in work -> voxel_destroy.
-// Faces between two full cells are left out. Light is baked into the vertex colours: contact shading at the
-// corners of each face and the share of open sky above it within the model.
+// Faces between two full cells are left out. The vertices know how much of the sky reaches them: contact
+// shading at the corners of each face and the share of open sky above it within the model.
 #ifndef STIMULI_BUILTIN_VOXEL_H
 #define STIMULI_BUILTIN_VOXEL_H
 

@@ -7,3 +7,4 @@ layout(constant_id = 4) const bool has_emissive = false;
 layout(constant_id = 5) const bool alpha_mask = false;
 layout(constant_id = 6) const bool glows = false;
 layout(constant_id = 7) const bool plain_uv = false;
+layout(constant_id = 8) const bool sky_in_alpha = false;

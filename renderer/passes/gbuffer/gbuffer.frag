@@ -34,7 +34,7 @@ layout(location = 4) out uint out_id;
 void main()
 {
     shared_material m = materials[in_ids.x];
-    vec4 base = m.base_colour * in_colour;
+    vec4 base = m.base_colour * vec4(in_colour.rgb, sky_in_alpha ? 1.0 : in_colour.a);
     if (has_base)
         base *= texture(base_texture, in_uv[plain_uv ? 0 : 0]);
     if (alpha_mask && base.a < m.alpha_cutoff)
@@ -54,9 +54,9 @@ void main()
     vec2 surface = vec2(m.roughness, m.metallic);
     if (has_metallic_roughness)
         surface *= texture(metallic_roughness_texture, in_uv[plain_uv ? 0 : 1]).gb;
-    float occlusion = 1.0;
+    float occlusion = sky_in_alpha ? in_colour.a : 1.0;
     if (has_occlusion)
-        occlusion = mix(1.0, texture(occlusion_texture, in_uv[plain_uv ? 0 : 3]).r, m.occlusion_strength);
+        occlusion *= mix(1.0, texture(occlusion_texture, in_uv[plain_uv ? 0 : 3]).r, m.occlusion_strength);
     out_base = vec4(base.rgb, occlusion);
     out_normal = packSnorm2x16(normal_encode(normal));
     out_surface = vec4(surface, 0.0, 0.0);

@@ -4,6 +4,7 @@
 layout(constant_id = 0) const bool has_emissive = false;
 layout(constant_id = 1) const bool has_occlusion = false;
 layout(constant_id = 2) const bool every_light = false; // no light lists: what they must equal
+layout(constant_id = 3) const bool has_shadow = false;
 
 layout(scalar, binding = 0) readonly buffer Frame { shared_frame frame; };
 layout(scalar, binding = 1) readonly buffer Lights { shared_light lights[]; };
@@ -15,3 +16,4 @@ layout(binding = 6, rgba16f) uniform writeonly image2DArray hdr;
 layout(binding = 7) uniform sampler2DArray emissive_image;
 layout(binding = 8) uniform sampler2DArray occlusion_image;
 layout(binding = 9) uniform sampler2DArray occlusion_distance;
+layout(binding = 10) uniform sampler2DArrayShadow shadow_map;

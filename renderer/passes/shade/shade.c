@@ -20,7 +20,7 @@ static const struct gpu_binding all_bindings[BINDINGS] = {
     {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, // emissive
     {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, // occlusion
     {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, // its distances
-    {.absent = true},
+    {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, // sun shadow
     {.absent = true},
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},  // redraw map, where there is one
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // tiles of it
@@ -34,7 +34,7 @@ static bool create_kernel(struct shade *s, const struct shade_desc *desc, struct
                                      ? (struct gpu_code){shade_comp_redraw, sizeof shade_comp_redraw}
                                      : (struct gpu_code){shade_comp, sizeof shade_comp};
     const int32_t constants[] = {desc->emissive != VK_NULL_HANDLE, desc->ao != VK_NULL_HANDLE,
-                                 desc->every_light};
+                                 desc->every_light, desc->shadow_map != VK_NULL_HANDLE};
     return gpu_kernel_create(s->gpu,
                              &(struct gpu_kernel_desc){.name = "shade",
                                                        .code = code,
@@ -72,7 +72,9 @@ bool shade_init(struct shade *s, const struct shade_desc *desc)
                                        .usage = VK_IMAGE_USAGE_STORAGE_BIT};
     struct gpu_binding bindings[BINDINGS];
     s->sampler = gpu_sampler_create_plain(s->gpu);
-    if (!s->sampler || !gpu_image_create(s->gpu, &hdr, &s->hdr) || !create_kernel(s, desc, bindings))
+    s->compare = gpu_sampler_create_compare(s->gpu);
+    if (!s->sampler || !s->compare || !gpu_image_create(s->gpu, &hdr, &s->hdr) ||
+        !create_kernel(s, desc, bindings))
         return false;
     const VkImageLayout colour = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
     const struct gpu_resource resources[BINDINGS] = {
@@ -86,6 +88,9 @@ bool shade_init(struct shade *s, const struct shade_desc *desc)
         sampled(s, desc->emissive, colour, desc->base),
         sampled(s, desc->ao, VK_IMAGE_LAYOUT_GENERAL, desc->base),
         sampled(s, desc->ao_depth, VK_IMAGE_LAYOUT_GENERAL, desc->base),
+        {.view = desc->shadow_map ? desc->shadow_map : desc->depth,
+         .sampler = s->compare,
+         .layout = VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL},
         [REDRAW_MAP] = {.view = desc->redraw_map},
         [TILES] = {.buffer = desc->tiles ? desc->tiles : desc->frame},
     };
@@ -101,6 +106,7 @@ void shade_finish(struct shade *s)
     gpu_kernel_destroy(s->gpu, &s->kernel);
     gpu_image_destroy(s->gpu, &s->hdr);
     vkDestroySampler(s->gpu->device, s->sampler, NULL);
+    vkDestroySampler(s->gpu->device, s->compare, NULL);
     *s = (struct shade){0};
 }
 

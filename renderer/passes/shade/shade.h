@@ -15,7 +15,7 @@ struct shade {
     VkDescriptorSet set;
     bool redraw;
     const struct gpu_buffer *tiles;
-    VkSampler sampler;
+    VkSampler sampler, compare;
     struct gpu_image hdr; // two layers, layout GENERAL while in use
 };
 
@@ -29,6 +29,7 @@ struct shade_desc {
     // Ambient occlusion of half size, rounded up, two layers, sampled, GENERAL: 1 is open. Null: none. Its
     // distances along the view axis are r32f, 0 for background.
     VkImageView ao, ao_depth;
+    VkImageView shadow_map;         // of the sun (sun_shadow.glsl), DEPTH_READ_ONLY_OPTIMAL; null: none
     VkImageView redraw_map;         // r8 uint, GENERAL; null: every pixel is shaded
     const struct gpu_buffer *tiles; // of the redraw map (tiles.glsl); NULL: shade_record_tiles is not used
     bool every_light;               // no light lists: what they must equal, for tests

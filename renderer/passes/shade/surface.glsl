@@ -1,6 +1,7 @@
 // The light of one pixel of the G-buffer per work item. Needs shared.h, view.glsl and bindings.glsl.
 #include "renderer/shared/colour.glsl"
 #include "renderer/shared/normal.glsl"
+#include "renderer/shared/sun_shadow.glsl"
 #include "renderer/passes/shade/light_list.glsl"
 #include "renderer/passes/shade/lighting.glsl"
 #include "renderer/passes/shade/occlusion.glsl"
@@ -25,7 +26,10 @@ vec3 shade_pixel(ivec3 pixel, bool wanted, uvec2 corner)
         float occlusion = base.a;
         if (has_occlusion)
             occlusion *= occlusion_at(occlusion_image, occlusion_distance, pixel, distance);
-        radiance = ambient(s, occlusion) + sun_light(s);
+        vec3 sun = sun_light(s);
+        if (has_shadow && sun != vec3(0.0))
+            sun *= sun_share(shadow_map, position, s.normal);
+        radiance = ambient(s, occlusion) + sun;
     } else if (wanted) {
         radiance = sky(normalize(direction));
     }
