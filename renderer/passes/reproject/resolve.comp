@@ -47,25 +47,30 @@ ivec2 source_pixel(uint inverted)
     return ivec2(index % frame.width, index / frame.width);
 }
 
-// What shows between the spread pixels of a nearer surface: in at least two of the four directions across the pixel
-// both neighbours are more than 10 % nearer (so at least four of the eight are, and six always suffice; an edge or a
-// corner of a nearer surface has them on one side only), and the pixel did not lie between those two in the last frame
+// Whether both neighbours across a pixel are nearer, and the pixel did not lie between those two in the last frame
 // either, as what is seen through a real gap did.
+bool covered(ivec3 pixel, ivec2 source, ivec2 across, float nearer)
+{
+    ivec3 a = pixel + ivec3(across, 0), b = pixel - ivec3(across, 0);
+    if (min(depth_at(a), depth_at(b)) <= nearer)
+        return false;
+    ivec2 twice_middle = source_pixel(source_at(a)) + source_pixel(source_at(b));
+    return any(greaterThan(abs(2 * source - twice_middle), ivec2(2)));
+}
+
+// What shows between the spread pixels of a nearer surface: it is covered along a diagonal and along one more of the
+// four directions across it, by neighbours more than 10 % nearer. So at least four of the eight are nearer, and seven
+// always suffice; an edge or a corner of a nearer surface has them on one side only.
 bool shows_through(ivec3 pixel, ivec2 source)
 {
-    const ivec2 across[4] = ivec2[4](ivec2(1, 0), ivec2(0, 1), ivec2(1, 1), ivec2(1, -1));
-    float nearer = max(1.1 * depth_at(pixel), 1e-36);
-    int pairs = 0;
     if (any(lessThan(pixel.xy, ivec2(1))) || pixel.x + 1 >= int(frame.width) || pixel.y + 1 >= int(frame.height))
         return false;
-    for (int i = 0; i < 4; i++) {
-        ivec3 a = pixel + ivec3(across[i], 0), b = pixel - ivec3(across[i], 0);
-        if (min(depth_at(a), depth_at(b)) > nearer) {
-            ivec2 twice_middle = source_pixel(source_at(a)) + source_pixel(source_at(b));
-            pairs += any(greaterThan(abs(2 * source - twice_middle), ivec2(2))) ? 1 : 0;
-        }
-    }
-    return pairs >= 2;
+    float nearer = max(1.1 * depth_at(pixel), 1e-36);
+    bool rising = covered(pixel, source, ivec2(1, -1), nearer), falling = covered(pixel, source, ivec2(1, 1), nearer);
+    if (rising && falling)
+        return true;
+    return (rising || falling) &&
+           (covered(pixel, source, ivec2(1, 0), nearer) || covered(pixel, source, ivec2(0, 1), nearer));
 }
 
 void main()
