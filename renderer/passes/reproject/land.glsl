@@ -28,5 +28,6 @@ landing land(ivec3 source)
         return nowhere;
     if (view_eccentricity_deg(frame.eyes[source.z], view_ray(frame.eyes[source.z], size, at + 0.5)) < push.drop_deg)
         return nowhere;
-    return landing(true, at, direction ? 0.0 : frame.near_m / -p.z);
+    // far beyond everything all surfaces are alike, and none is denormal, which devices treat differently
+    return landing(true, at, direction ? 0.0 : max(frame.near_m / -p.z, 1e-35));
 }
