@@ -29,5 +29,6 @@ landing land(ivec3 source)
     if (push.drop_cosine <= 1.0 &&
         view_within(frame.eyes[source.z], view_ray(frame.eyes[source.z], size, at + 0.5), push.drop_cosine))
         return nowhere;
-    return landing(true, at, direction ? 0.0 : frame.near_m / -p.z);
+    // far beyond everything all surfaces are alike, and none is denormal, which devices treat differently
+    return landing(true, at, direction ? 0.0 : max(frame.near_m / -p.z, 1e-35));
 }
