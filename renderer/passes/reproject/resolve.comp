@@ -7,7 +7,8 @@
 
 layout(local_size_x = SHARED_TILE, local_size_y = SHARED_TILE) in;
 
-layout(scalar, binding = 0) readonly buffer Frame { shared_frame frame; };
+layout(scalar, binding = 0) uniform Frame { shared_frame frame; };
+#include "renderer/shared/eye.glsl"
 layout(scalar, binding = 1) readonly buffer Motions { mat4 motions[]; };
 layout(binding = 2, rgba32f) uniform readonly image2DArray position_from;
 #ifdef POINTS
@@ -52,7 +53,7 @@ float depth_now(vec4 position, int eye)
 {
     if (position.w < 0.0)
         return 0.0;
-    vec4 forward = frame.eyes[eye].forward;
+    vec4 forward = frame_eye(uint(eye)).forward;
     return frame.near_m / (dot(forward.xyz, move_position(position).xyz) + forward.w);
 }
 
