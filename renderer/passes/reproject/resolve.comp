@@ -95,6 +95,15 @@ bool shows_through(ivec3 pixel)
 {
     const ivec2 across[4] = ivec2[4](ivec2(1, 0), ivec2(0, 1), ivec2(1, 1), ivec2(1, -1));
     float nearer = max(1.1 * depth_at(pixel), 1e-36);
+    ivec2 rest = min(pixel.xy, ivec2(frame.width, frame.height) - 1 - pixel.xy);
+    if (min(rest.x, rest.y) >= REACH) { // most pixels have nothing nearer on the one side: plain loads tell it soonest
+        float nearest = 0.0;
+        for (int k = 0; k < 4; k++)
+            for (int i = 1; i <= REACH; i++)
+                nearest = max(nearest, depth_at(pixel + ivec3(i * across[k], 0)));
+        if (nearest <= nearer)
+            return false;
+    }
     for (int k = 0; k < 4; k++) {
         int i = next_nearer(pixel, across[k], nearer);
         int j = i > 0 ? next_nearer(pixel, -across[k], nearer) : 0;
