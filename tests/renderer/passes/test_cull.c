@@ -451,7 +451,7 @@ static void no_owner_of_a_redrawn_pixel_is_culled(void **state)
 {
     (void)state;
     static const uint32_t sizes[][2] = {{64, 48}, {16, 16}, {101, 37}, {200, 90}};
-    struct tally tallies[MAPS] = {{0}};
+    struct tally tallies[MAPS] = {{0}}, large[MAPS] = {{0}};
     for (size_t s = 0; s < countof(sizes); s++) {
         struct bed b;
         bed_open(&b, s, sizes[s][0], sizes[s][1]);
@@ -473,6 +473,8 @@ static void no_owner_of_a_redrawn_pixel_is_culled(void **state)
                 run_by_map(&b, map, false);
                 check_draws(&b);
                 check_map(&b, map, owned, &tallies[k % MAPS]);
+                if (s == 3)
+                    check_map(&b, map, owned, &large[k % MAPS]);
             }
         }
         free(owned);
@@ -483,7 +485,14 @@ static void no_owner_of_a_redrawn_pixel_is_culled(void **state)
         print_message("%s map: of %llu boxes in the frustum %llu own a redrawn pixel, %llu are kept\n",
                       map_names[k], (unsigned long long)tallies[k].in_frustum,
                       (unsigned long long)tallies[k].owners, (unsigned long long)tallies[k].kept);
+    print_message("the largest image: disc %llu of %llu, %llu kept; half %llu, %llu kept\n",
+                  (unsigned long long)large[DISC].owners, (unsigned long long)large[DISC].in_frustum,
+                  (unsigned long long)large[DISC].kept, (unsigned long long)large[HALF].owners,
+                  (unsigned long long)large[HALF].kept);
     assert_int_equal(tallies[EMPTY].kept, 0);
+    // tiles of 8 pixels and a margin of 2: in an image of 200 x 90 they cost this much, in a large one less
+    assert_true(large[DISC].kept < 3 * large[DISC].owners && 10 * large[HALF].kept < 11 * large[HALF].owners);
+    assert_true(100 * tallies[FULL].kept < 102 * tallies[FULL].owners);
     assert_true(tallies[FULL].owners > 10000 && tallies[DISC].owners > 1000 && tallies[ONE_PIXEL].owners > 100);
 }
 
