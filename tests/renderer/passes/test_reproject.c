@@ -656,7 +656,7 @@ static void a_dolly_towards_a_wall_lets_nothing_through(void **state)
     // the wall alone before the sky, and before a far plane
     static const struct stage stages[] = {{1, {{-1, 1.2, -0.9, 0.8, -3}}},
                                           {2, {{-1, 1.2, -0.9, 0.8, -3}, {-300, 300, -300, 300, -100}}}};
-    static const double steps_m[] = {0.003, 0.012, 0.05, 0.1};
+    static const double steps_m[] = {0.008, 0.02, 0.05, 0.1};
     for (size_t k = 0; k < countof(stages); k++) {
         for (size_t i = k; i < countof(steps_m); i++) {
             const struct dolly kept = run_dolly(&b, &stages[k], steps_m[i], 16),
