@@ -1,5 +1,5 @@
-// The list of tiles of SHARED_TILE x SHARED_TILE pixels that hold redrawn ones, for indirect dispatches of one work
-// group a tile. Words: a VkDispatchIndirectCommand (3), the count, then one code a tile.
+// Lists of tiles of SHARED_TILE x SHARED_TILE pixels for indirect dispatches of one work group a tile. Words: a
+// VkDispatchIndirectCommand (3), the count, then one code a tile. Emptied to {0, 1, 1, 0}.
 
 uint tile_code(uvec2 tile, uint eye)
 {
@@ -11,3 +11,16 @@ ivec3 tile_pixel(uint code, uvec2 lane)
 {
     return ivec3(SHARED_TILE * ivec2(code & 0x7fffu, code >> 15 & 0x7fffu) + ivec2(lane), code >> 30);
 }
+
+// Adds a tile to a list. More than 65535 groups, the least that every device allows in one dimension, make rows; the
+// last may have more groups than there are tiles.
+#define TILE_APPEND(list, code)                                                                                        \
+    {                                                                                                                  \
+        uint slot = atomicAdd(list[3], 1u);                                                                            \
+        list[SHARED_TILES_FIRST + slot] = code;                                                                        \
+        atomicMax(list[0], min(slot + 1u, 65535u));                                                                    \
+        atomicMax(list[1], slot / 65535u + 1u);                                                                        \
+    }
+
+// The place in a list of a work group's tile; none where it is not less than the count, word 3.
+#define TILE_INDEX (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x)

@@ -5,7 +5,7 @@
 // - `splat` atomic resolves points by 64-bit atomics instead of drawing them as sprites (reproject.h); both
 // give the
 //   same pixels;
-// - a pixel that shows through between the spread pixels of a nearer surface is a hole (resolve.comp);
+// - a pixel that shows through between the spread pixels of a nearer surface is a hole (show_through.comp);
 // - pixels are not discarded in the fragment shader: kept pixels get the nearest depth first, so that the depth
 //   test rejects their fragments before they are shaded;
 // - a hole takes the finest level that has a value at its place, blended bilinearly between that level's valid
@@ -162,6 +162,7 @@ static bool create_warping(struct mode_state *s, const struct mode_setup *setup)
                                              .width = setup->width,
                                              .height = setup->height,
                                              .points = setup->values[SPLAT] == SPLAT_POINTS,
+                                             .still = !s->has_movers,
                                              .colour = {s->colour[0].view, s->colour[1].view},
                                              .position = {s->position[0].view, s->position[1].view}};
     const struct pyramid_desc pyramid = {.gpu = s->gpu,
@@ -172,6 +173,7 @@ static bool create_warping(struct mode_state *s, const struct mode_setup *setup)
                                          .position = {s->position[0].view, s->position[1].view},
                                          .redraw_map = s->redraw_map.view,
                                          .moving = s->marks,
+                                         .tiles = &s->reproject.hole_tiles,
                                          .confidence = {.epsilon = s->epsilon,
                                                         .fovea_deg = s->fovea_deg,
                                                         .periphery_deg = (float)setup->values[PERIPHERY_DEG],

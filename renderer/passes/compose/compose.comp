@@ -22,15 +22,15 @@ void main()
 {
     ivec3 pixel = ivec3(gl_GlobalInvocationID);
     if (push.listed != 0u) {
-        uint index = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+        uint index = TILE_INDEX;
         if (index >= tiles[SHARED_TILES_FIRST - 1])
             return;
         pixel = tile_pixel(tiles[SHARED_TILES_FIRST + index], gl_LocalInvocationID.xy);
     }
     if (pixel.x >= int(frame.width) || pixel.y >= int(frame.height) || imageLoad(redraw_map, pixel).x == 0u)
         return;
-    vec3 ray = view_ray(frame_eye(uint(pixel.z)), vec2(frame.width, frame.height), vec2(pixel.xy) + 0.5 - frame.jitter);
-    mat4 world_from_eye = frame_eye(uint(pixel.z)).world_from_eye;
+    vec3 ray = view_ray(EYE(uint(pixel.z), tangents), vec2(frame.width, frame.height), vec2(pixel.xy) + 0.5 - frame.jitter);
+    mat4 world_from_eye = EYE(uint(pixel.z), world_from_eye);
     vec3 direction = mat3(world_from_eye) * ray;
     float depth = texelFetch(depth_image, pixel, 0).x;
     vec4 position = vec4(normalize(direction), -1.0);

@@ -37,7 +37,7 @@ bool seen(shared_item item, uint eye)
     vec3 half_size = 0.5 * (item.box_max - item.box_min);
     mat3 extent = mat3(m[0].xyz * half_size.x, m[1].xyz * half_size.y, m[2].xyz * half_size.z);
     for (int i = 0; i < 5; i++) {
-        vec4 plane = i < 4 ? frame_eye(eye).planes[i] : frame_eye(eye).forward;
+        vec4 plane = i < 4 ? EYE(eye, planes[i]) : EYE(eye, forward);
         vec3 along = abs(plane.xyz * extent);
         // the margin covers the rounding of positions up to 200 m from the origin
         if (dot(plane.xyz, centre) + plane.w + along.x + along.y + along.z < -1e-4)

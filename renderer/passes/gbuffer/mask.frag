@@ -21,7 +21,7 @@ void main()
 #ifdef KEPT
     if (redrawn)
         discard;
-    gl_FragDepth = kept_depth(frame.eyes[push.eye], imageLoad(position_image, pixel), frame.near_m);
+    gl_FragDepth = kept_depth(frame.eyes[push.eye].forward, imageLoad(position_image, pixel), frame.near_m);
 #else
     gl_FragDepth = redrawn ? 0.0 : 1.0;
 #endif

@@ -19,7 +19,7 @@ void main()
     ivec3 pixel = ivec3(gl_GlobalInvocationID);
     if (pixel.x >= int(frame.width) || pixel.y >= int(frame.height) || imageLoad(redraw_map, pixel).x != 0u)
         return;
-    float laid = kept_depth(frame_eye(uint(pixel.z)), imageLoad(position_image, pixel), frame.near_m);
+    float laid = kept_depth(EYE(uint(pixel.z), forward), imageLoad(position_image, pixel), frame.near_m);
     // the same float was written there by the same function; a hair for compilers that fuse it otherwise
     if (texelFetch(depth_image, pixel, 0).x > laid * 1.000001)
         imageStore(redraw_map, pixel, uvec4(1u));

@@ -38,7 +38,7 @@ void main()
         return;
     shared_item item = items[moving[index]];
     shared_object object = objects[item.object];
-    mat4 clip = frame_eye(eye).clip_from_world;
+    mat4 clip = EYE(eye, clip_from_world);
     mark(project(item, clip * object.world_from_mesh), eye);
     mark(project(item, clip * motions[push.motion_count + object.moving_id] * object.world_from_mesh), eye);
 }

@@ -37,7 +37,7 @@ vec4 load(ivec3 pixel, out float depth)
     vec4 p = imageLoad(position, pixel);
     if (p.w == 0.0)
         return vec4(0.0);
-    depth = kept_depth(frame_eye(uint(pixel.z)), p, frame.near_m);
+    depth = kept_depth(EYE(uint(pixel.z), forward), p, frame.near_m);
     return vec4(imageLoad(colour, pixel).rgb, 1.0);
 #else
     depth = imageLoad(depth_in, pixel).x;

@@ -2,8 +2,9 @@
 
 #include "renderer/shared/shared.h"
 
+#include "decide.comp.h"
+#include "decide.comp_moving.h"
 #include "fill.comp.h"
-#include "fill.comp_moving.h"
 #include "pull.comp.h"
 #include "pull.comp_first.h"
 
@@ -19,6 +20,12 @@ static const struct gpu_binding pull_bindings[] = {
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},  // its depths
 };
 
+static const struct gpu_binding decide_bindings[] = {
+    {.type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}, // frame
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},  // position
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},  // redraw map
+};
+
 static const struct gpu_binding fill_bindings[] = {
     {.type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},         // frame
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},          // colour
@@ -26,6 +33,7 @@ static const struct gpu_binding fill_bindings[] = {
     {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, // pyramid
     {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, // its depths
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},          // redraw map
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},         // tiles
 };
 
 uint32_t pyramid_levels(uint32_t width, uint32_t height, float epsilon, float hole_decay)
@@ -70,10 +78,15 @@ static bool create_sets(struct pyramid *p, const struct pyramid_desc *desc)
             {.view = p->image.view, .sampler = p->sampler},
             {.view = p->depth.view, .sampler = p->sampler},
             {.view = desc->redraw_map},
+            {.buffer = desc->tiles ? desc->tiles : desc->frame}, // never read without a list
         };
+        const struct gpu_resource decide[] = {
+            {.buffer = desc->frame}, {.view = desc->position[target]}, {.view = desc->redraw_map}};
+        p->decide_sets[target] =
+            gpu_set_create(p->gpu, p->decide.set_layout, decide_bindings, decide, countof(decide));
         p->fill_sets[target] =
             gpu_set_create(p->gpu, p->fill.set_layout, fill_bindings, resources, countof(resources));
-        if (!p->fill_sets[target])
+        if (!p->fill_sets[target] || !p->decide_sets[target])
             return false;
     }
     return true;
@@ -107,26 +120,35 @@ static bool create_images(struct pyramid *p)
 
 bool pyramid_init(struct pyramid *p, const struct pyramid_desc *desc)
 {
-    *p = (struct pyramid){
-        .gpu = desc->gpu, .width = desc->width, .height = desc->height, .confidence = desc->confidence};
+    *p = (struct pyramid){.gpu = desc->gpu,
+                          .width = desc->width,
+                          .height = desc->height,
+                          .confidence = desc->confidence,
+                          .tiles = desc->tiles};
     p->confidence.levels =
         pyramid_levels(p->width, p->height, desc->confidence.epsilon, desc->confidence.hole_decay);
     struct gpu_kernel_desc pull = {.name = "pull first",
                                    .code = {pull_comp_first, sizeof pull_comp_first},
                                    .bindings = pull_bindings,
                                    .binding_count = countof(pull_bindings)};
-    const struct gpu_kernel_desc fill = {
-        .name = "fill",
-        .code = desc->moving ? (struct gpu_code){fill_comp_moving, sizeof fill_comp_moving}
-                             : (struct gpu_code){fill_comp, sizeof fill_comp},
-        .bindings = fill_bindings,
-        .binding_count = countof(fill_bindings),
+    const struct gpu_kernel_desc decide = {
+        .name = "decide",
+        .code = desc->moving ? (struct gpu_code){decide_comp_moving, sizeof decide_comp_moving}
+                             : (struct gpu_code){decide_comp, sizeof decide_comp},
+        .bindings = decide_bindings,
+        .binding_count = countof(decide_bindings),
         .push_bytes = sizeof(struct pyramid_confidence)};
+    const struct gpu_kernel_desc fill = {.name = "fill",
+                                         .code = {fill_comp, sizeof fill_comp},
+                                         .bindings = fill_bindings,
+                                         .binding_count = countof(fill_bindings),
+                                         .push_bytes = sizeof(struct pyramid_confidence)};
     if (!create_images(p) || !gpu_kernel_create(p->gpu, &pull, &p->pull_first))
         return false;
     pull.name = "pull";
     pull.code = (struct gpu_code){pull_comp, sizeof pull_comp};
-    if (!gpu_kernel_create(p->gpu, &pull, &p->pull) || !gpu_kernel_create(p->gpu, &fill, &p->fill))
+    if (!gpu_kernel_create(p->gpu, &pull, &p->pull) || !gpu_kernel_create(p->gpu, &decide, &p->decide) ||
+        !gpu_kernel_create(p->gpu, &fill, &p->fill))
         return false;
     p->sampler = gpu_sampler_create_plain(p->gpu);
     return p->sampler && create_sets(p, desc);
@@ -139,6 +161,7 @@ void pyramid_finish(struct pyramid *p)
     for (uint32_t target = 0; target < 2; target++) {
         for (uint32_t i = 0; i < PYRAMID_LEVELS; i++)
             gpu_set_free(p->gpu, p->pull_sets[target][i]);
+        gpu_set_free(p->gpu, p->decide_sets[target]);
         gpu_set_free(p->gpu, p->fill_sets[target]);
     }
     for (uint32_t i = 0; i < PYRAMID_LEVELS; i++) {
@@ -148,6 +171,7 @@ void pyramid_finish(struct pyramid *p)
     vkDestroySampler(p->gpu->device, p->sampler, NULL);
     gpu_kernel_destroy(p->gpu, &p->pull_first);
     gpu_kernel_destroy(p->gpu, &p->pull);
+    gpu_kernel_destroy(p->gpu, &p->decide);
     gpu_kernel_destroy(p->gpu, &p->fill);
     gpu_image_destroy(p->gpu, &p->image);
     gpu_image_destroy(p->gpu, &p->depth);
@@ -183,9 +207,17 @@ static double trusted_cosine(const struct pyramid_confidence *c)
 
 void pyramid_fill(const struct pyramid *p, VkCommandBuffer cmd, uint32_t target, uint32_t turn)
 {
+    const VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+    const uint32_t x = (p->width + SHARED_TILE - 1) / SHARED_TILE,
+                   y = (p->height + SHARED_TILE - 1) / SHARED_TILE;
     struct pyramid_confidence push = p->confidence;
     push.turn = turn;
     push.trusted_cosine = (float)trusted_cosine(&push);
-    gpu_dispatch(cmd, &p->fill, p->fill_sets[target], &push, sizeof push,
-                 (p->width + SHARED_TILE - 1) / SHARED_TILE, (p->height + SHARED_TILE - 1) / SHARED_TILE, 2);
+    push.listed = p->tiles != NULL;
+    gpu_dispatch(cmd, &p->decide, p->decide_sets[target], &push, sizeof push, x, y, 2);
+    gpu_barrier(cmd, compute, compute);
+    if (p->tiles)
+        gpu_dispatch_indirect(cmd, &p->fill, p->fill_sets[target], &push, sizeof push, p->tiles);
+    else
+        gpu_dispatch(cmd, &p->fill, p->fill_sets[target], &push, sizeof push, x, y, 2);
 }

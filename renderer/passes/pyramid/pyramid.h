@@ -19,6 +19,7 @@ struct pyramid_confidence {
     uint32_t levels;                // set by pyramid_init
     uint32_t turn;                  // set by pyramid_fill
     float trusted_cosine;           // set by pyramid_fill
+    uint32_t listed;                // set by pyramid_fill
 };
 
 struct pyramid {
@@ -29,9 +30,10 @@ struct pyramid {
     struct gpu_image depth; // its farthest depths, reversed; 0: the background, or nothing
     VkImageView level_views[PYRAMID_LEVELS], depth_views[PYRAMID_LEVELS];
     VkSampler sampler;
-    struct gpu_kernel pull_first, pull, fill;
+    struct gpu_kernel pull_first, pull, decide, fill;
+    const struct gpu_buffer *tiles;
     VkDescriptorSet pull_sets[2][PYRAMID_LEVELS]; // by target, then by level
-    VkDescriptorSet fill_sets[2];
+    VkDescriptorSet decide_sets[2], fill_sets[2];
 };
 
 struct pyramid_desc {
@@ -41,6 +43,8 @@ struct pyramid_desc {
     VkImageView colour[2], position[2]; // rgba8, rgba32f
     VkImageView redraw_map;             // r8 uint, written
     bool moving;                        // objects move: what the map already holds is redrawn too
+    const struct gpu_buffer
+        *tiles; // that hold holes (tiles.glsl), visible to DRAW_INDIRECT; NULL: all are looked at
     struct pyramid_confidence confidence;
 };
 

@@ -29,7 +29,7 @@ void main()
     pyramid[(eye * push.tiles_y + tile.y) * push.tiles_x + tile.x] = sum;
     if (sum == 0u)
         return;
-    tiles.words[SHARED_TILES_FIRST + atomicAdd(tiles.words[3], 1u)] = tile_code(tile, eye);
+    TILE_APPEND(tiles.words, tile_code(tile, eye))
     if (push.last != 0u)
         atomicAdd(counters.shaded_px, sum);
 }

@@ -1,9 +1,9 @@
 #include "renderer/passes/redraw/redraw.h"
 
-#include "close.comp.h"
+#include "coarse.comp.h"
 #include "count.comp.h"
 
-enum { CLOSE_GROUP = 64 };
+enum { COARSE_GROUP = 64 };
 
 static const struct gpu_binding count_bindings[] = {
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},  // redraw map
@@ -12,9 +12,8 @@ static const struct gpu_binding count_bindings[] = {
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // counters
 };
 
-static const struct gpu_binding close_bindings[] = {
+static const struct gpu_binding coarse_bindings[] = {
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // pyramid
-    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // tiles
 };
 
 struct push {
@@ -56,26 +55,26 @@ bool redraw_init(struct redraw *r, const struct redraw_desc *desc)
                                           .bindings = count_bindings,
                                           .binding_count = countof(count_bindings),
                                           .push_bytes = sizeof(struct push)};
-    const struct gpu_kernel_desc close = {.name = "redraw close",
-                                          .code = {close_comp, sizeof close_comp},
-                                          .bindings = close_bindings,
-                                          .binding_count = countof(close_bindings),
-                                          .push_bytes = sizeof(struct push)};
+    const struct gpu_kernel_desc coarse_desc = {.name = "redraw pyramid",
+                                                .code = {coarse_comp, sizeof coarse_comp},
+                                                .bindings = coarse_bindings,
+                                                .binding_count = countof(coarse_bindings),
+                                                .push_bytes = sizeof(struct push)};
     if (!gpu_buffer_create(r->gpu, "redraw pyramid", texels(r, &coarse) * word, storage, GPU_DEVICE,
                            &r->pyramid) ||
         !gpu_buffer_create(r->gpu, "redraw tiles", list * word,
                            storage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
                            GPU_DEVICE, &r->tiles) ||
-        !gpu_kernel_create(r->gpu, &count, &r->count) || !gpu_kernel_create(r->gpu, &close, &r->close))
+        !gpu_kernel_create(r->gpu, &count, &r->count) || !gpu_kernel_create(r->gpu, &coarse_desc, &r->coarse))
         return false;
     const struct gpu_resource count_resources[] = {
         {.view = desc->redraw_map}, {.buffer = &r->pyramid}, {.buffer = &r->tiles}, {.buffer = desc->counters}};
-    const struct gpu_resource close_resources[] = {{.buffer = &r->pyramid}, {.buffer = &r->tiles}};
+    const struct gpu_resource coarse_resources[] = {{.buffer = &r->pyramid}};
     r->count_set =
         gpu_set_create(r->gpu, r->count.set_layout, count_bindings, count_resources, countof(count_resources));
-    r->close_set =
-        gpu_set_create(r->gpu, r->close.set_layout, close_bindings, close_resources, countof(close_resources));
-    return r->count_set && r->close_set;
+    r->coarse_set = gpu_set_create(r->gpu, r->coarse.set_layout, coarse_bindings, coarse_resources,
+                                   countof(coarse_resources));
+    return r->count_set && r->coarse_set;
 }
 
 void redraw_finish(struct redraw *r)
@@ -83,9 +82,9 @@ void redraw_finish(struct redraw *r)
     if (!r->gpu)
         return;
     gpu_set_free(r->gpu, r->count_set);
-    gpu_set_free(r->gpu, r->close_set);
+    gpu_set_free(r->gpu, r->coarse_set);
     gpu_kernel_destroy(r->gpu, &r->count);
-    gpu_kernel_destroy(r->gpu, &r->close);
+    gpu_kernel_destroy(r->gpu, &r->coarse);
     gpu_buffer_destroy(r->gpu, &r->pyramid);
     gpu_buffer_destroy(r->gpu, &r->tiles);
     *r = (struct redraw){0};
@@ -100,14 +99,16 @@ void redraw_record(const struct redraw *r, VkCommandBuffer cmd, bool last)
 {
     const VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
     const struct push push = {r->tiles_x, r->tiles_y, r->levels, last};
+    const uint32_t empty[SHARED_TILES_FIRST] = {0, 1, 1, 0};
     uint32_t coarse;
     texels(r, &coarse);
     gpu_barrier(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
-    vkCmdFillBuffer(cmd, r->tiles.buffer, 0, SHARED_TILES_FIRST * sizeof(uint32_t), 0);
+    vkCmdUpdateBuffer(cmd, r->tiles.buffer, 0, sizeof empty, empty);
     gpu_barrier(cmd, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, compute);
     gpu_dispatch(cmd, &r->count, r->count_set, &push, sizeof push, (r->tiles_x + SHARED_TILE - 1) / SHARED_TILE,
                  (r->tiles_y + SHARED_TILE - 1) / SHARED_TILE, 2);
     gpu_barrier(cmd, compute, compute);
-    gpu_dispatch(cmd, &r->close, r->close_set, &push, sizeof push, (coarse + CLOSE_GROUP) / CLOSE_GROUP, 1, 1);
+    gpu_dispatch(cmd, &r->coarse, r->coarse_set, &push, sizeof push, (coarse + COARSE_GROUP - 1) / COARSE_GROUP,
+                 1, 1);
     gpu_barrier(cmd, compute, compute | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT);
 }

@@ -19,8 +19,8 @@ struct redraw {
     struct gpu_buffer
         pyramid; // one word a texel, both eyes' level 0, then both eyes' level 1, ...: not 0: redrawn
     struct gpu_buffer tiles; // the list (renderer/shared/tiles.glsl)
-    struct gpu_kernel count, close;
-    VkDescriptorSet count_set, close_set;
+    struct gpu_kernel count, coarse;
+    VkDescriptorSet count_set, coarse_set;
 };
 
 struct redraw_desc {

@@ -8,7 +8,7 @@
 // same pixels.
 //
 // Points land on the unjittered pixel grid, or a still camera's picture would swirl. A pixel that shows through
-// between the spread pixels of a nearer surface is made a hole (resolve.comp).
+// between the spread pixels of a nearer surface is made a hole (show_through.comp).
 //
 // A position's w says what it is: 0 a hole, -1 the background (xyz a direction), 1 the static scene, and
 // 1 + moving id + age / 64 a moving object, age in frames since its pixel was redrawn.
@@ -20,14 +20,16 @@
 struct reproject {
     struct gpu *gpu;
     uint32_t width, height;
-    struct gpu_buffer keys; // one uint64 a pixel and eye
-    struct gpu_kernel splat, resolve;
+    struct gpu_buffer keys;                   // one uint64 a pixel and eye
+    struct gpu_buffer ranges;                 // of depths, per tile
+    struct gpu_buffer near_tiles, hole_tiles; // lists (renderer/shared/tiles.glsl)
+    struct gpu_kernel splat, resolve, measure, candidates, show_through;
     VkPipeline points; // null: the atomic splat
     VkPipelineLayout point_layout;
     VkDescriptorSetLayout point_set_layout;
     struct gpu_image source, depth; // what the points draw
     VkSampler sampler;
-    VkDescriptorSet splat_sets[2], resolve_sets[2]; // by the index of the history that is read
+    VkDescriptorSet sets[2], point_sets[2]; // by the index of the history that is read
 };
 
 struct reproject_desc {
@@ -35,6 +37,7 @@ struct reproject_desc {
     const struct gpu_buffer *frame, *motions;
     uint32_t width, height;
     bool points;             // the rasteriser's points instead of the atomic splat
+    bool still;              // nothing ever moves: motions are not read
     VkImageView colour[2];   // rgba8, tone-mapped
     VkImageView position[2]; // rgba32f
 };
@@ -42,9 +45,9 @@ struct reproject_desc {
 bool reproject_init(struct reproject *reproject, const struct reproject_desc *desc);
 void reproject_finish(struct reproject *reproject);
 uint64_t reproject_memory(const struct reproject *reproject);
-// Reads history `from`, writes colour and position `1 - from`. Points that land less than drop_deg from the
-// gaze are dropped: that hole is redrawn anyway (section 4); 0 keeps all. drop_moving: those of moving objects
-// too.
+// Reads history `from`, writes colour and position `1 - from`, and lists the tiles that have holes in
+// hole_tiles. Points that land less than drop_deg from the gaze are dropped: that hole is redrawn anyway
+// (section 4); 0 keeps all. drop_moving: those of moving objects too.
 void reproject_record(const struct reproject *reproject, VkCommandBuffer cmd, uint32_t from, float drop_deg,
                       bool drop_moving);
 

@@ -25,7 +25,7 @@ void main()
         return;
     ivec3 pixel = ivec3(2 * to.xy, to.z);
 #ifdef REDRAW
-    float depth = kept_depth(frame_eye(uint(to.z)), imageLoad(position_image, pixel), frame.near_m);
+    float depth = kept_depth(EYE(uint(to.z), forward), imageLoad(position_image, pixel), frame.near_m);
 #else
     float depth = texelFetch(depth_image, pixel, 0).x;
 #endif

@@ -7,7 +7,7 @@ bool half_pixel(ivec2 size, out ivec3 pixel)
 {
     pixel = ivec3(gl_GlobalInvocationID);
 #ifdef REDRAW
-    uint index = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    uint index = TILE_INDEX;
     if (index >= tiles.words[SHARED_TILES_FIRST - 1])
         return false;
     pixel = tile_pixel(tiles.words[SHARED_TILES_FIRST + index], gl_LocalInvocationID.xy);

@@ -28,7 +28,7 @@ const float most_texels = 64.0; // of the radius on the screen; nearer surfaces 
 // View-space point of a texel; the projection's jitter, half a pixel at most, is left out.
 vec3 point_of(ivec3 texel, float distance)
 {
-    return distance * view_ray(frame_eye(uint(texel.z)), vec2(frame.width, frame.height), 2.0 * vec2(texel.xy) + 0.5);
+    return distance * view_ray(EYE(uint(texel.z), tangents), vec2(frame.width, frame.height), 2.0 * vec2(texel.xy) + 0.5);
 }
 
 // The surface's change from one texel to the next along an axis, on the flatter side.
@@ -56,8 +56,8 @@ void main()
     vec3 here = point_of(texel, distance);
     vec3 normal = cross(slope(texel, ivec2(0, 1), here, size), slope(texel, ivec2(1, 0), here, size));
     normal *= inversesqrt(max(dot(normal, normal), 1e-20));
-    shared_eye eye = frame_eye(uint(texel.z));
-    float texels_per_m = 0.5 * float(frame.width) / ((eye.tangents.x + eye.tangents.y) * distance);
+    vec4 tangents = EYE(uint(texel.z), tangents);
+    float texels_per_m = 0.5 * float(frame.width) / ((tangents.x + tangents.y) * distance);
     float reach = min(radius_m * texels_per_m, most_texels), sum = 0.0;
     if (reach < 1.0) {
         imageStore(occlusion, texel, vec4(1.0)); // nothing within the radius is resolved

@@ -26,11 +26,7 @@ void main()
     for (int y = first.y; y <= last.y; y++) {
         for (int x = first.x; x <= last.x; x++) {
             if (pyramid[(eye * push.tiles_y + uint(y)) * push.tiles_x + uint(x)] != 0u) {
-                uint slot = atomicAdd(tiles.words[3], 1u);
-                tiles.words[SHARED_TILES_FIRST + slot] = tile_code(tile, eye);
-                // more than 65535 groups, the least that every device allows in one dimension, make rows
-                atomicMax(tiles.words[0], min(slot + 1u, 65535u));
-                atomicMax(tiles.words[1], slot / 65535u + 1u);
+                TILE_APPEND(tiles.words, tile_code(tile, eye))
                 return;
             }
         }

@@ -44,8 +44,8 @@ vec3 rgb(vec3 c)
 // The point at a place of the image (pixels) and a reversed depth; as in passes/reproject.
 vec4 point_at(uint eye, vec2 place, float depth, float w)
 {
-    mat4 world_from_eye = frame_eye(eye).world_from_eye;
-    vec3 direction = mat3(world_from_eye) * view_ray(frame_eye(eye), vec2(frame.width, frame.height), place);
+    mat4 world_from_eye = EYE(eye, world_from_eye);
+    vec3 direction = mat3(world_from_eye) * view_ray(EYE(eye, tangents), vec2(frame.width, frame.height), place);
     return depth > 0.0 ? vec4(world_from_eye[3].xyz + direction * (frame.near_m / depth), w) : vec4(direction, -1.0);
 }
 
@@ -60,7 +60,7 @@ vec2 history_place(ivec3 pixel)
     if (imageLoad(redraw_map, pixel).x == 0u) {
         // Motion smoothing, section 6.2: not the exact position, but the pixel's centre at its depth. A point that is
         // about to change its pixel is off that centre, and so it meets a history between two pixels.
-        position = point_at(eye, centre, kept_depth(frame_eye(eye), position, frame.near_m), max(position.w, 1.0));
+        position = point_at(eye, centre, kept_depth(EYE(eye, forward), position, frame.near_m), max(position.w, 1.0));
         offset = vec2(0.0);
     }
 #else

@@ -21,7 +21,7 @@ void main()
     ivec3 pixel = ivec3(gl_GlobalInvocationID);
 #ifdef REDRAW
     if (push.listed != 0u) {
-        uint index = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+        uint index = TILE_INDEX;
         if (index >= tiles[SHARED_TILES_FIRST - 1])
             return;
         pixel = tile_pixel(tiles[SHARED_TILES_FIRST + index], gl_LocalInvocationID.xy);

@@ -3,24 +3,16 @@
 #extension GL_GOOGLE_include_directive : require
 #include "renderer/shared/shared.h"
 
-// The coarser levels of the pyramid, each straight from the finest, and the list's dispatch command: more than 65535
-// groups, the least that every device allows in one dimension, are folded into rows.
+// The coarser levels of the pyramid, each straight from the finest.
 
 layout(local_size_x = 64) in;
 
 layout(scalar, binding = 0) buffer Pyramid { uint pyramid[]; };
-layout(scalar, binding = 1) buffer Tiles { uint words[]; } tiles;
 layout(push_constant) uniform Push { uint tiles_x, tiles_y, levels, last; } push;
 
 void main()
 {
     uint index = gl_GlobalInvocationID.x;
-    if (index == 0u) {
-        uint count = tiles.words[3];
-        tiles.words[0] = min(count, 65535u);
-        tiles.words[1] = (count + 65534u) / 65535u;
-        tiles.words[2] = 1u;
-    }
     uint base = 2u * push.tiles_x * push.tiles_y;
     for (uint level = 1u; level < push.levels; level++) {
         uint width = max(push.tiles_x >> level, 1u), height = max(push.tiles_y >> level, 1u);
