@@ -10,7 +10,8 @@
 
 #define PANEL_WIDTH 470.0
 #define PANEL_HEIGHT 330.0
-#define LEGEND_HEIGHT 30.0
+#define LEGEND_HEIGHT 44.0
+#define LEAST_WIDTH 760.0
 #define SHEET_MARGIN 8.0
 
 // One measure of a group's modes over their times.
@@ -159,23 +160,30 @@ static void write_legend(FILE *out, const struct row *rows, size_t mode_count)
     series[count++] = (struct chart_series){.name = "Pareto front", .style = CHART_STEP, .colour = CHART_GRAY};
     series[count++] = (struct chart_series){
         .name = "time of regular", .style = CHART_LINE, .colour = CHART_GRAY, .dashed = true};
-    chart_legend(out, series, count, 16, CHART_HEADING + 14, MEASURES * PANEL_WIDTH);
+    chart_legend(out, series, count, 16, CHART_HEADING + 10, LEAST_WIDTH - 32);
+}
+
+// FLIP stands beside PSNR only where it was measured.
+static size_t measure_count(const struct row *rows)
+{
+    return isnan(rows[0].error.flip) ? 1 : MEASURES;
 }
 
 bool plot_write(FILE *out, const struct row *rows, size_t group_count, size_t mode_count)
 {
     char subtitle[512];
     const double top = CHART_HEADING + LEGEND_HEIGHT;
+    const size_t shown = measure_count(rows);
     bool ok = true;
     snprintf(subtitle, sizeof subtitle,
              "%s; median of %llu frames, errors against regular over %llu of them%s%s", rows[0].device,
              (unsigned long long)rows[0].frames, (unsigned long long)rows[0].error_frames,
              rows[0].ssao ? "; SSAO" : "", rows[0].taa ? "; TAA" : "");
-    chart_begin(out, MEASURES * PANEL_WIDTH + 2 * SHEET_MARGIN,
+    chart_begin(out, fmax((double)shown * PANEL_WIDTH + 2 * SHEET_MARGIN, LEAST_WIDTH),
                 top + (double)group_count * PANEL_HEIGHT + SHEET_MARGIN, "Error over time", subtitle);
     write_legend(out, rows, mode_count);
     for (size_t g = 0; g < group_count; g++)
-        for (size_t i = 0; ok && i < MEASURES; i++)
+        for (size_t i = 0; ok && i < shown; i++)
             ok = write_panel(out, rows + g * mode_count, mode_count, &measures[i],
                              (struct chart_rect){SHEET_MARGIN + (double)i * PANEL_WIDTH,
                                                  top + (double)g * PANEL_HEIGHT, PANEL_WIDTH, PANEL_HEIGHT});
