@@ -231,7 +231,8 @@ static void write_point_label(FILE *out, const struct frame_map *m, double x, do
     const bool left = x + 7 + LETTER * (double)strlen(value) > m->plot.left + m->plot.width;
     char attributes[160];
     snprintf(attributes, sizeof attributes,
-             "font-size=\"10\" fill=\"%s\" text-anchor=\"%s\" paint-order=\"stroke\" stroke=\"#ffffff\" stroke-width=\"3\"",
+             "font-size=\"10\" fill=\"%s\" text-anchor=\"%s\" paint-order=\"stroke\" stroke=\"#ffffff\" "
+             "stroke-width=\"3\"",
              colour, left ? "end" : "start");
     label(out, left ? x - 7 : x + 7, y - 5, attributes, value);
 }
