@@ -46,8 +46,7 @@ struct errors *errors_create(const struct errors_desc *desc)
              create_flicker(errors);
     }
     if (!ok)
-        fprintf(stderr,
-                "fovbench: the errors cannot be measured: out of memory, or too few pixels per degree\n");
+        fprintf(stderr, "fovbench: out of memory\n");
     else if ((errors->motion = motion_create(desc->lineup->renderer, desc->lineup->scene, desc->reference,
                                              desc->width, desc->height)))
         return errors;

@@ -87,7 +87,7 @@ static void fill_passes(struct pass_series *passes, const char *source, struct r
 // Each pass in a submission of its own: the frame's time means nothing here, the passes' do.
 static bool walk_passes(const struct group_desc *g, struct row *rows)
 {
-    enum { PASS_FRAMES = 30 };
+    enum { PASS_FRAMES = 10, PASS_WARM_UP = 5 };
     const struct walk walk = walk_of(g);
     struct lineup_desc desc = lineup_of(g);
     struct frame_stats stats[REQUEST_MODES];
@@ -99,11 +99,11 @@ static bool walk_passes(const struct group_desc *g, struct row *rows)
     bool ok = lineup_init(&lineup, &desc, g->scene);
     for (size_t mode = 0; ok && mode < lineup.count; mode++)
         ok = pass_series_init(&passes[mode], measured);
-    for (uint64_t n = 0; ok && n < REQUEST_WARM_UP + measured; n++) {
-        progress_show(g->progress_name, "passes of frame", n, REQUEST_WARM_UP + measured);
+    for (uint64_t n = 0; ok && n < PASS_WARM_UP + measured; n++) {
+        progress_show(g->progress_name, "passes of frame", n, PASS_WARM_UP + measured);
         walk_frame(&walk, g->scene, n, &frame);
         ok = lineup_draw(&lineup, &frame, stats);
-        for (size_t mode = 0; ok && n >= REQUEST_WARM_UP && mode < lineup.count; mode++)
+        for (size_t mode = 0; ok && n >= PASS_WARM_UP && mode < lineup.count; mode++)
             pass_series_add(&passes[mode], &stats[mode]);
     }
     for (size_t mode = 0; mode < g->request->mode_count; mode++) {

@@ -2,6 +2,10 @@
 
 #include <math.h>
 
+// flip.h: the pixels per degree that it takes.
+#define FLIP_LEAST 1.0
+#define FLIP_MOST 240.0
+
 _Static_assert((int)IMAGE_RINGS == (int)ROW_RINGS, "a row has a place for each ring");
 
 struct image_view measures_view(const struct frame_eye *eye)
@@ -14,10 +18,12 @@ bool measures_tools_init(struct measures_tools *tools, const struct frame_eye *e
                          uint32_t height)
 {
     const struct image_view view = measures_view(eye);
+    const double ppd = image_pixels_per_degree(&view, width, height);
+    const bool has_flip = ppd >= FLIP_LEAST && ppd <= FLIP_MOST;
     *tools = (struct measures_tools){{image_rings_create(), image_rings_create()},
                                      image_ssim_create(),
-                                     image_flip_create(image_pixels_per_degree(&view, width, height))};
-    if (tools->rings[EYE_LEFT] && tools->rings[EYE_RIGHT] && tools->ssim && tools->flip)
+                                     has_flip ? image_flip_create(ppd) : NULL};
+    if (tools->rings[EYE_LEFT] && tools->rings[EYE_RIGHT] && tools->ssim && (tools->flip || !has_flip))
         return true;
     measures_tools_finish(tools);
     return false;
@@ -49,7 +55,7 @@ bool measures_add(struct measures *m, struct measures_tools *tools, int eye, con
     const struct image_rings *rings = tools->rings[eye];
     return image_error_rings_add(&m->error, test, truth, rings) &&
            image_ssim_add(tools->ssim, test, truth, rings, &m->ssim) &&
-           image_flip_add(tools->flip, test, truth, rings, &m->flip, NULL);
+           (!tools->flip || image_flip_add(tools->flip, test, truth, rings, &m->flip, NULL));
 }
 
 struct row_error measures_result(const struct measures *m, int region)

@@ -13,7 +13,7 @@
 struct measures_tools {
     struct image_rings *rings[EYES]; // owned, as all
     struct image_ssim *ssim;
-    struct image_flip *flip;
+    struct image_flip *flip; // NULL: fewer pixels per degree than FLIP is defined for, or more
 };
 
 struct image_view measures_view(const struct frame_eye *eye);

@@ -6,16 +6,13 @@
 #include <string.h>
 
 static const char about[] =
-    "Draws every mode on the same frames of a scene's camera path, frame by frame in turn, and measures time "
-    "and error.\n"
-    "The first of the modes is always 'regular': times are also given as its ratio to each mode, and errors "
-    "are\n"
-    "against its picture of the same frame. Modes, scenes, sizes and gazes take several values each; every "
-    "scene is\n"
-    "measured at every size with every gaze.\n"
+    "Draws every mode on the same frames of a scene's camera path, frame by frame in turn, and measures\n"
+    "time and error. The first mode is always 'regular': the others' times are also given as ratios to its\n"
+    "time in the same frame, and errors are against its picture. Modes, scenes, sizes and gazes take several\n"
+    "values each; every scene is measured at every size with every gaze.\n"
     "\n"
-    "also: fovbench compare OLD.csv NEW.csv    what got slower or worse\n"
-    "      fovbench figures FILE.csv... -o DIR figures like the paper's 6, 10, 12, 13 and 14";
+    "also: fovbench compare OLD.csv NEW.csv      what got slower or worse\n"
+    "      fovbench figures FILE.csv... -o DIR   figures like the paper's 6, 10, 12, 13 and 14";
 
 enum option {
     MODES,
