@@ -202,8 +202,9 @@ int command_compare(int argc, char **argv)
         if (i == OPTIONS_HELP) {
             options_help(
                 stdout, "fovbench compare OLD.csv NEW.csv",
-                "Says what got slower or worse, and what better, beyond the tolerances it names. Exit status 1 "
-                "where\nsomething got worse, else 0. Times are compared as ratios to regular of the same run.",
+                "Says what got slower or worse, and what better, beyond the tolerances it names. Exit status\n"
+                "1 where something got worse, else 0. Times are compared as ratios to regular of the same\n"
+                "run; regular's own milliseconds only where both files name one device.",
                 specs);
             return EXIT_DONE;
         }

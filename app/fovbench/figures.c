@@ -106,10 +106,9 @@ int command_figures(int argc, char **argv)
         if (i == OPTIONS_HELP) {
             options_help(
                 stdout, "fovbench figures FILE.csv... -o DIR",
-                "Draws figures like the paper's as SVG: from a file of --csv Figure 6 (time against epsilon by "
-                "pass; "
-                "needs\n--pass-times) and 10 (time against resolution), from one of --frames-csv Figure 12 "
-                "(triangles), 13\n(pixels shaded) and 14 (time against the share of moving pixels).",
+                "Draws figures like the paper's as SVG: from a file of --csv Figure 6 (time against epsilon\n"
+                "by pass; wants --pass-times) and 10 (time against resolution), from one of --frames-csv\n"
+                "Figures 12 (triangles), 13 (pixels shaded) and 14 (time against the share of moving pixels).",
                 specs);
             return EXIT_DONE;
         }
