@@ -25,22 +25,21 @@ static const struct option_spec specs[OPTIONS + 1] = {
     [OPTIONS] = {NULL, NULL, NULL},
 };
 
-// 1 written, 0 nothing to show (said), -1 failed (said).
-static int write_figure(size_t figure, const struct csv_table *table, size_t number, const char *folder)
+// The figure's number-th sheet: 1 written, 0 nothing to show (why says it), -1 failed (said).
+static int write_figure(size_t figure, const struct csv_table *table, size_t number, const char *folder,
+                        char why[ERROR_SIZE])
 {
     struct output output;
     char path[ERROR_SIZE - 512], error[ERROR_SIZE], suffix[16] = "";
     if (number > 0)
         snprintf(suffix, sizeof suffix, "-%zu", number + 1);
     snprintf(path, sizeof path, "%s/%s%s.svg", folder, figures[figure].file, suffix);
-    if (!output_open(&output, path, error, sizeof error)) {
-        fprintf(stderr, "fovbench figures: %s\n", error);
-        return -1;
+    bool ok = output_open(&output, path, error, sizeof error), drawn = false;
+    if (ok) {
+        drawn = figures[figure].draw(output.file, table, why, ERROR_SIZE);
+        ok = output_close(&output, drawn, error, sizeof error);
     }
-    bool drawn = figures[figure].draw(output.file, table, error, sizeof error);
-    if (!drawn)
-        fprintf(stderr, "fovbench figures: no %s: %s\n", figures[figure].file, error);
-    if (!output_close(&output, drawn, error, sizeof error)) {
+    if (!ok) {
         fprintf(stderr, "fovbench figures: %s\n", error);
         return -1;
     }
@@ -49,19 +48,32 @@ static int write_figure(size_t figure, const struct csv_table *table, size_t num
     return drawn;
 }
 
+// From every table of its kind; how many sheets, -1 where writing failed.
+static int draw_figure(size_t figure, const struct csv_table *tables, size_t count, const char *folder)
+{
+    char why[ERROR_SIZE] = "there is no file of its kind";
+    int drawn = 0;
+    for (size_t t = 0; t < count; t++) {
+        if ((csv_column(&tables[t], "frame") >= 0) != figures[figure].of_frames)
+            continue;
+        int result = write_figure(figure, &tables[t], (size_t)drawn, folder, why);
+        if (result < 0)
+            return -1;
+        drawn += result;
+    }
+    if (!drawn)
+        fprintf(stderr, "fovbench figures: no %s: %s\n", figures[figure].file, why);
+    return drawn;
+}
+
 static int draw_all(const struct csv_table *tables, size_t count, const char *folder)
 {
-    size_t written = 0;
+    int written = 0;
     for (size_t f = 0; f < FIGURES; f++) {
-        size_t number = 0;
-        for (size_t t = 0; t < count; t++) {
-            if ((csv_column(&tables[t], "frame") >= 0) != figures[f].of_frames)
-                continue;
-            int result = write_figure(f, &tables[t], number++, folder);
-            if (result < 0)
-                return EXIT_FAILED;
-            written += (size_t)result;
-        }
+        int result = draw_figure(f, tables, count, folder);
+        if (result < 0)
+            return EXIT_FAILED;
+        written += result;
     }
     if (written)
         return EXIT_DONE;

@@ -34,9 +34,11 @@ static void weighted_psnr(const struct row *row, double *out_value, double *out_
     *out_cost = -row->error.wpsnr_db;
 }
 
+// So it is with a FLIP of 0: without it the axis shows how the others differ.
 static void flip(const struct row *row, double *out_value, double *out_cost)
 {
-    *out_value = *out_cost = row->error.flip;
+    *out_cost = row->error.flip;
+    *out_value = row->error.flip > 0 ? row->error.flip : (double)NAN;
 }
 
 static const struct measure measures[] = {
@@ -152,7 +154,7 @@ static void write_legend(FILE *out, const struct row *rows, size_t mode_count)
 {
     struct chart_series series[REQUEST_MODES + 4];
     size_t count = 0;
-    for (size_t i = 0; i < mode_count; i++)
+    for (size_t i = 1; i < mode_count; i++) // regular is a line
         series[count++] =
             (struct chart_series){.name = rows[i].mode, .style = CHART_POINTS, .colour = colour_of(rows, i)};
     series[count++] = (struct chart_series){
