@@ -15,6 +15,7 @@ enum { TICKS = 6, LOG_TICKS = 24 };
 #define MARGIN_BOTTOM 44.0
 #define MARGIN_TOP 26.0
 #define MARGIN_RIGHT 14.0
+#define LETTER 5.6 // a guess at the width of a letter of 10 px
 
 // Where values fall.
 struct frame_map {
@@ -223,6 +224,19 @@ static void write_area(FILE *out, const struct frame_map *m, const struct chart_
     fprintf(out, "Z\" fill=\"%s\" fill-opacity=\"0.8\"/>\n", colour_of(s->colour));
 }
 
+// To the right of the point, or to its left where it would leave the panel.
+static void write_point_label(FILE *out, const struct frame_map *m, double x, double y, const char *colour,
+                              const char *value)
+{
+    const bool left = x + 7 + LETTER * (double)strlen(value) > m->plot.left + m->plot.width;
+    char attributes[160];
+    snprintf(attributes, sizeof attributes,
+             "font-size=\"10\" fill=\"%s\" text-anchor=\"%s\" paint-order=\"stroke\" stroke=\"#ffffff\" "
+             "stroke-width=\"3\"",
+             colour, left ? "end" : "start");
+    label(out, left ? x - 7 : x + 7, y - 5, attributes, value);
+}
+
 static void write_points(FILE *out, const struct frame_map *m, const struct chart_series *s)
 {
     const char *colour = colour_of(s->colour);
@@ -235,9 +249,7 @@ static void write_points(FILE *out, const struct frame_map *m, const struct char
                 x, y, s->size > 0 ? s->size : POINT_RADIUS, s->hollow ? "#ffffff" : colour,
                 s->hollow ? colour : "none");
         if (s->labels && s->labels[i])
-            label(out, x + 7, y - 6,
-                  "font-size=\"10\" paint-order=\"stroke\" stroke=\"#ffffff\" stroke-width=\"3\"",
-                  s->labels[i]);
+            write_point_label(out, m, x, y, colour, s->labels[i]);
     }
 }
 

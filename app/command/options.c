@@ -31,9 +31,9 @@ static int find(const struct option_spec *specs, const char *name, size_t length
     return -1;
 }
 
-static int read_option(struct options *options, const char *word)
+// `name` is the word without its dashes.
+static int read_option(struct options *options, const char *name)
 {
-    const char *name = word + 2;
     size_t length = strcspn(name, "=");
     int found = find(options->specs, name, length);
     if (found < 0) {
@@ -72,7 +72,9 @@ int options_next(struct options *options)
     if (!options->words_only && (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0))
         return OPTIONS_HELP;
     if (!options->words_only && strncmp(word, "--", 2) == 0)
-        return read_option(options, word);
+        return read_option(options, word + 2);
+    if (!options->words_only && word[0] == '-' && word[1] && !word[2] && find(options->specs, word + 1, 1) >= 0)
+        return read_option(options, word + 1);
     if (!options->words_only && word[0] == '-' && word[1]) {
         options_wrong(options->command, "there is no option '%s'", word);
         return OPTIONS_ERROR;
@@ -88,8 +90,8 @@ void options_help(FILE *out, const char *usage, const char *about, const struct 
         fprintf(out, "\n");
     for (int i = 0; specs && specs[i].name; i++) {
         char left[64];
-        snprintf(left, sizeof left, "--%s%s%s", specs[i].name, specs[i].argument ? " " : "",
-                 specs[i].argument ? specs[i].argument : "");
+        snprintf(left, sizeof left, "%s%s%s%s", specs[i].name[1] ? "--" : "-", specs[i].name,
+                 specs[i].argument ? " " : "", specs[i].argument ? specs[i].argument : "");
         fprintf(out, "  %-26s %s\n", left, specs[i].help);
     }
 }

@@ -16,7 +16,7 @@ enum { OPTIONS_DONE = -1, OPTIONS_ERROR = -2, OPTIONS_HELP = -3, OPTIONS_WORD = 
 enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_USAGE = 2 }; // DESIGN section 6
 
 struct option_spec {
-    const char *name;     // without the dashes; NULL ends the table
+    const char *name;     // without the dashes, one letter: with one dash; NULL ends the table
     const char *argument; // "FILE", "WxH"; NULL: a flag
     const char *help;
 };

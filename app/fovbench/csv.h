@@ -4,7 +4,6 @@
 #ifndef APP_FOVBENCH_CSV_H
 #define APP_FOVBENCH_CSV_H
 
-#include "app/fovbench/request.h"
 #include "app/fovbench/row.h"
 
 #include <stdio.h>

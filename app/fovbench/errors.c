@@ -1,34 +1,55 @@
 #include "app/fovbench/errors.h"
 
-#include "analysis/image/error.h"
+#include "analysis/image/flicker_excess.h"
+#include "app/fovbench/measures.h"
+#include "app/fovbench/motion.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-struct errors {
-    struct lineup *lineup; // borrowed
-    uint32_t width, height;
-    uint64_t every, frames;
-    uint8_t *truth, *shown; // owned, one eye's pixels each
-    struct image_error_sum sums[REQUEST_MODES];
+struct mode_errors {
+    struct measures measures, supersampled;
+    struct image_flicker_excess *flicker[EYES]; // owned
+    struct image_ring_sum excess;
 };
+
+struct errors {
+    struct errors_desc desc;
+    struct motion *motion; // owned, as all below
+    struct measures_tools tools;
+    uint8_t *truth, *shown; // one eye's pixels each
+    uint64_t compared, supersampled;
+    struct mode_errors modes[REQUEST_MODES];
+};
+
+static bool create_flicker(struct errors *errors)
+{
+    for (size_t mode = 0; mode < errors->desc.lineup->count; mode++)
+        for (int eye = 0; eye < EYES; eye++)
+            if (!(errors->modes[mode].flicker[eye] = image_flicker_excess_create()))
+                return false;
+    return true;
+}
 
 struct errors *errors_create(const struct errors_desc *desc)
 {
     struct errors *errors = calloc(1, sizeof *errors);
     const size_t bytes = 4 * (size_t)desc->width * desc->height;
+    bool ok = false;
     if (errors) {
-        errors->lineup = desc->lineup;
-        errors->width = desc->width;
-        errors->height = desc->height;
-        errors->every = desc->every;
+        errors->desc = *desc;
         errors->truth = malloc(bytes);
         errors->shown = malloc(bytes);
+        ok = errors->truth && errors->shown &&
+             measures_tools_init(&errors->tools, desc->eye, desc->width, desc->height) &&
+             create_flicker(errors);
     }
-    if (errors && errors->truth && errors->shown)
+    if (!ok)
+        fprintf(stderr, "fovbench: out of memory\n");
+    else if ((errors->motion = motion_create(desc->lineup->renderer, desc->lineup->scene, desc->reference,
+                                             desc->width, desc->height)))
         return errors;
-    fprintf(stderr, "fovbench: out of memory\n");
     errors_destroy(errors);
     return NULL;
 }
@@ -37,59 +58,106 @@ void errors_destroy(struct errors *errors)
 {
     if (!errors)
         return;
+    for (size_t mode = 0; mode < REQUEST_MODES; mode++)
+        for (int eye = 0; eye < EYES; eye++)
+            image_flicker_excess_destroy(errors->modes[mode].flicker[eye]);
+    measures_tools_finish(&errors->tools);
+    motion_destroy(errors->motion);
     free(errors->truth);
     free(errors->shown);
     free(errors);
 }
 
-bool errors_due(const struct errors *errors, uint64_t n)
-{
-    return n % errors->every + 2 >= errors->every;
-}
-
 static bool is_second(const struct errors *errors, uint64_t n)
 {
-    return n % errors->every + 1 == errors->every;
+    return n % errors->desc.every + 1 == errors->desc.every;
 }
 
-static bool take_eye(struct errors *errors, const struct frame_eye *eye, int index)
+bool errors_due(const struct errors *errors, uint64_t n)
 {
-    const struct image_view view = {eye->fov.tan_left, eye->fov.tan_right, eye->fov.tan_down,
-                                    eye->fov.tan_up,   eye->gaze_x_deg,    eye->gaze_y_deg};
-    const struct image_pixels truth = {errors->truth, errors->width, errors->height, 4, 0};
-    const struct image_pixels shown = {errors->shown, errors->width, errors->height, 4, 0};
-    if (!renderer_read(errors->lineup->options[0], index, errors->truth))
+    return n < errors->desc.frames && (is_second(errors, n) || is_second(errors, n + 1));
+}
+
+// Of all compared frames the wanted number, evenly spread.
+static bool supersample_due(const struct errors *errors)
+{
+    const uint64_t all = errors->desc.frames / errors->desc.every, wanted = errors->desc.supersampled_frames;
+    return errors->desc.supersample && all &&
+           (errors->compared + 1) * wanted / all != errors->compared * wanted / all;
+}
+
+static struct image_pixels pixels_of(const struct errors *errors, const uint8_t *data)
+{
+    return (struct image_pixels){data, errors->desc.width, errors->desc.height, 4, 0};
+}
+
+static bool take_mode(struct errors *errors, size_t mode, int eye, bool second, const uint8_t *supersampled)
+{
+    struct mode_errors *m = &errors->modes[mode];
+    const struct image_pixels truth = pixels_of(errors, errors->truth),
+                              shown = pixels_of(errors, errors->shown);
+    if (!second)
+        image_flicker_excess_cut(m->flicker[eye]);
+    if (!image_flicker_excess_add(m->flicker[eye], &shown, &truth, motion_of(errors->motion, eye),
+                                  errors->tools.rings[eye], &m->excess))
         return false;
-    for (size_t mode = 0; mode < errors->lineup->count; mode++) {
-        if (!renderer_read(errors->lineup->options[mode], index, errors->shown))
+    if (!second)
+        return true;
+    const struct image_pixels finer = pixels_of(errors, supersampled);
+    return measures_add(&m->measures, &errors->tools, eye, &shown, &truth) &&
+           (!supersampled || measures_add(&m->supersampled, &errors->tools, eye, &shown, &finer));
+}
+
+static bool take_eye(struct errors *errors, int eye, bool second, bool finer)
+{
+    struct lineup *lineup = errors->desc.lineup;
+    const uint8_t *supersampled = NULL;
+    if (!renderer_read(lineup->options[0], eye, errors->truth))
+        return false;
+    if (finer && !(supersampled = supersample_read(errors->desc.supersample, eye)))
+        return false;
+    for (size_t mode = 0; mode < lineup->count; mode++) {
+        if (!renderer_read(lineup->options[mode], eye, errors->shown))
             return false;
-        image_error_add(&errors->sums[mode], &shown, &truth, &view);
+        if (!take_mode(errors, mode, eye, second, supersampled)) {
+            fprintf(stderr, "fovbench: pictures of %ux%u cannot be compared: too small, or out of memory\n",
+                    errors->desc.width, errors->desc.height);
+            return false;
+        }
     }
     return true;
 }
 
-bool errors_take(struct errors *errors, const struct frame *frame, uint64_t n)
+bool errors_take(struct errors *errors, const struct frame *frame, uint64_t n, double *out_moving_share)
 {
-    if (!is_second(errors, n))
-        return true;
+    const bool second = is_second(errors, n), finer = second && supersample_due(errors);
+    *out_moving_share = (double)NAN;
+    if (!motion_draw(errors->motion, frame) || (finer && !supersample_draw(errors->desc.supersample, frame)) ||
+        !measures_tools_look(&errors->tools, frame, errors->desc.width, errors->desc.height))
+        return false;
     for (int eye = 0; eye < EYES; eye++)
-        if (!take_eye(errors, &frame->eyes[eye], eye))
+        if (!take_eye(errors, eye, second, finer))
             return false;
-    errors->frames++;
+    if (second)
+        *out_moving_share = motion_share(errors->motion);
+    errors->compared += second;
+    errors->supersampled += finer;
     return true;
 }
 
-uint64_t errors_frames(const struct errors *errors)
+void errors_result(const struct errors *errors, size_t mode, struct row *row)
 {
-    return errors->frames;
-}
-
-void errors_result(const struct errors *errors, size_t mode, struct row_error *out,
-                   struct row_error out_rings[ROW_RINGS])
-{
-    const struct image_error error = image_error_result(&errors->sums[mode]);
-    const double none = (double)NAN;
-    *out = (struct row_error){error.psnr_db, none, none, error.weighted_psnr_db, none};
-    for (int i = 0; i < ROW_RINGS; i++)
-        out_rings[i] = (struct row_error){none, none, none, none, none};
+    const struct mode_errors *m = &errors->modes[mode];
+    row->error_frames = errors->compared;
+    row->error = measures_result(&m->measures, IMAGE_WHOLE);
+    row->error.flicker_excess = image_ring_mean(&m->excess, IMAGE_WHOLE);
+    for (int i = 0; i < ROW_RINGS; i++) {
+        row->rings[i] = measures_result(&m->measures, i);
+        row->rings[i].flicker_excess = image_ring_mean(&m->excess, i);
+    }
+    if (errors->supersampled) {
+        row->supersampled_factor = supersample_factor(errors->desc.supersample);
+        row->supersampled_frames = errors->supersampled;
+        row->supersampled = measures_result(&m->supersampled, IMAGE_WHOLE);
+    }
 }

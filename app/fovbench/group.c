@@ -4,6 +4,7 @@
 #include "app/fovbench/errors.h"
 #include "app/fovbench/lineup.h"
 #include "app/fovbench/progress.h"
+#include "app/fovbench/still.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -12,7 +13,11 @@
 // What a walk fills.
 struct measured {
     struct series series[REQUEST_MODES];
-    struct errors *errors; // NULL: none
+    struct pass_series
+        passes[REQUEST_MODES];       // of the measured frames; empty where they do not tell passes apart
+    struct supersample *supersample; // NULL: none
+    struct errors *errors;           // NULL: none
+    double flicker_still[REQUEST_MODES];
 };
 
 static void out_of_memory(void)
@@ -43,14 +48,19 @@ static struct lineup_desc lineup_of(const struct group_desc *g)
 static bool step(struct lineup *lineup, const struct frame *frame, struct measured *m)
 {
     struct frame_stats stats[REQUEST_MODES];
+    double moving_share = (double)NAN;
     if (!lineup_draw(lineup, frame, stats))
         return false;
     if (frame->number < REQUEST_WARM_UP)
         return true;
     const uint64_t n = frame->number - REQUEST_WARM_UP;
-    for (size_t mode = 0; mode < lineup->count; mode++)
-        series_add(&m->series[mode], &stats[mode]);
-    return !m->errors || !errors_due(m->errors, n) || errors_take(m->errors, frame, n);
+    if (m->errors && errors_due(m->errors, n) && !errors_take(m->errors, frame, n, &moving_share))
+        return false;
+    for (size_t mode = 0; mode < lineup->count; mode++) {
+        series_add(&m->series[mode], &stats[mode], moving_share);
+        pass_series_add(&m->passes[mode], &stats[mode]);
+    }
+    return true;
 }
 
 static bool walk_path(const struct group_desc *g, struct lineup *lineup, struct measured *m)
@@ -67,10 +77,17 @@ static bool walk_path(const struct group_desc *g, struct lineup *lineup, struct 
     return true;
 }
 
+static void fill_passes(struct pass_series *passes, const char *source, struct row *row)
+{
+    row->pass_source = passes->count ? source : NULL;
+    for (size_t i = 0; i < passes->pass_count; i++)
+        row->passes[row->pass_count++] = (struct row_pass){passes->names[i], pass_series_median_ms(passes, i)};
+}
+
 // Each pass in a submission of its own: the frame's time means nothing here, the passes' do.
 static bool walk_passes(const struct group_desc *g, struct row *rows)
 {
-    enum { PASS_FRAMES = 30 };
+    enum { PASS_FRAMES = 10, PASS_WARM_UP = 5 };
     const struct walk walk = walk_of(g);
     struct lineup_desc desc = lineup_of(g);
     struct frame_stats stats[REQUEST_MODES];
@@ -82,26 +99,24 @@ static bool walk_passes(const struct group_desc *g, struct row *rows)
     bool ok = lineup_init(&lineup, &desc, g->scene);
     for (size_t mode = 0; ok && mode < lineup.count; mode++)
         ok = pass_series_init(&passes[mode], measured);
-    for (uint64_t n = 0; ok && n < REQUEST_WARM_UP + measured; n++) {
-        progress_show(g->progress_name, "passes of frame", n, REQUEST_WARM_UP + measured);
+    for (uint64_t n = 0; ok && n < PASS_WARM_UP + measured; n++) {
+        progress_show(g->progress_name, "passes of frame", n, PASS_WARM_UP + measured);
         walk_frame(&walk, g->scene, n, &frame);
         ok = lineup_draw(&lineup, &frame, stats);
-        for (size_t mode = 0; ok && n >= REQUEST_WARM_UP && mode < lineup.count; mode++)
+        for (size_t mode = 0; ok && n >= PASS_WARM_UP && mode < lineup.count; mode++)
             pass_series_add(&passes[mode], &stats[mode]);
     }
     for (size_t mode = 0; mode < g->request->mode_count; mode++) {
-        for (size_t i = 0; ok && i < passes[mode].pass_count; i++)
-            rows[mode].passes[rows[mode].pass_count++] =
-                (struct row_pass){passes[mode].names[i], pass_series_median_ms(&passes[mode], i)};
-        rows[mode].pass_source = "one submission per pass";
+        if (ok)
+            fill_passes(&passes[mode], "one submission per pass", &rows[mode]);
         pass_series_finish(&passes[mode]);
     }
     lineup_finish(&lineup);
     return ok;
 }
 
-static bool fill_row(const struct group_desc *g, const struct lineup *lineup, const struct measured *m,
-                     size_t mode, struct row *out)
+static bool fill_row(const struct group_desc *g, const struct lineup *lineup, struct measured *m, size_t mode,
+                     struct row *out)
 {
     const struct request *r = g->request;
     const struct renderer_device *device = renderer_device(lineup->renderer);
@@ -119,7 +134,7 @@ static bool fill_row(const struct group_desc *g, const struct lineup *lineup, co
                         .frames = m->series[mode].count,
                         .memory_mb = (double)renderer_option_memory(lineup->options[mode]) / 1e6,
                         .error = no_error,
-                        .flicker_still = none,
+                        .flicker_still = m->flicker_still[mode],
                         .supersampled = no_error};
     memcpy(out->device, device->name, sizeof out->device);
     memcpy(out->driver, device->driver, sizeof out->driver);
@@ -132,32 +147,65 @@ static bool fill_row(const struct group_desc *g, const struct lineup *lineup, co
         return false;
     }
     series_work(&m->series[mode], &out->work);
-    if (m->errors) {
-        out->error_frames = errors_frames(m->errors);
-        errors_result(m->errors, mode, &out->error, out->rings);
-    }
+    fill_passes(&m->passes[mode], "time stamps of the measured frames", out);
+    if (m->errors)
+        errors_result(m->errors, mode, out);
     return true;
 }
 
+static bool create_errors(const struct group_desc *g, struct lineup *lineup, struct measured *m)
+{
+    const struct request *r = g->request;
+    const struct walk walk = walk_of(g);
+    const struct lineup_desc desc = lineup_of(g);
+    struct frame frame;
+    walk_frame(&walk, g->scene, 0, &frame);
+    if (r->supersampled && !(m->supersample = supersample_create(&desc, g->scene)))
+        return false;
+    const struct errors_desc errors = {.lineup = lineup,
+                                       .supersample = m->supersample,
+                                       .reference = &r->modes[0].choice,
+                                       .eye = &frame.eyes[EYE_LEFT],
+                                       .width = g->size.width,
+                                       .height = g->size.height,
+                                       .frames = r->frames,
+                                       .every = r->error_every,
+                                       .supersampled_frames = r->supersampled};
+    m->errors = errors_create(&errors);
+    return m->errors != NULL;
+}
+
+// A software driver's time stamps do not tell passes of one submission apart (DESIGN section 2).
 static bool measured_init(const struct group_desc *g, struct lineup *lineup, struct measured *m)
 {
-    const struct errors_desc desc = {
-        .lineup = lineup, .width = g->size.width, .height = g->size.height, .every = g->request->error_every};
+    const bool stamps = !renderer_device(lineup->renderer)->software && !g->request->pass_times;
     *m = (struct measured){0};
-    for (size_t mode = 0; mode < lineup->count; mode++)
-        if (!series_init(&m->series[mode], g->request->frames)) {
+    for (size_t mode = 0; mode < lineup->count; mode++) {
+        m->flicker_still[mode] = (double)NAN;
+        if (!series_init(&m->series[mode], g->request->frames) ||
+            !pass_series_init(&m->passes[mode], stamps ? g->request->frames : 0)) {
             out_of_memory();
             return false;
         }
-    m->errors = desc.every ? errors_create(&desc) : NULL;
-    return m->errors || !desc.every;
+    }
+    return !g->request->error_every || create_errors(g, lineup, m);
 }
 
 static void measured_finish(struct measured *m)
 {
-    for (size_t mode = 0; mode < REQUEST_MODES; mode++)
+    for (size_t mode = 0; mode < REQUEST_MODES; mode++) {
         series_finish(&m->series[mode]);
+        pass_series_finish(&m->passes[mode]);
+    }
     errors_destroy(m->errors);
+    supersample_destroy(m->supersample);
+}
+
+static bool walk_still(const struct group_desc *g, struct lineup *lineup, struct measured *m)
+{
+    const struct walk walk = walk_of(g);
+    return !g->request->still_frames ||
+           still_measure(lineup, &walk, g->scene, g->request->still_frames, g->progress_name, m->flicker_still);
 }
 
 static void write_frames(FILE *out, const struct measured *m, const struct row *rows, size_t mode_count)
@@ -174,7 +222,8 @@ bool group_measure(const struct group_desc *g, struct row *out_rows)
     const struct lineup_desc desc = lineup_of(g);
     if (!lineup_init(&lineup, &desc, g->scene))
         return false;
-    bool ok = measured_init(g, &lineup, &measured) && walk_path(g, &lineup, &measured);
+    bool ok = measured_init(g, &lineup, &measured) && walk_path(g, &lineup, &measured) &&
+              walk_still(g, &lineup, &measured);
     for (size_t mode = 0; ok && mode < lineup.count; mode++)
         ok = fill_row(g, &lineup, &measured, mode, &out_rows[mode]);
     if (ok && g->frames_csv)

@@ -1,9 +1,8 @@
 #include "app/fovbench/json_write.h"
 
+#include "analysis/image/rings.h"
 #include "app/command/json.h"
 #include "renderer/renderer.h"
-
-#include <math.h>
 
 static void pair(FILE *out, const char *name, double value)
 {
@@ -34,12 +33,11 @@ static void write_error(FILE *out, const struct row_error *error, bool first)
 
 static void write_rings(FILE *out, const struct row *row)
 {
-    static const double limits_deg[ROW_RINGS + 1] = {0, 5, 15, 30, INFINITY};
     json_key(out, "rings", false);
     fputc('[', out);
     for (int i = 0; i < ROW_RINGS; i++) {
-        fprintf(out, "%s{\"from_deg\":%g", i ? "," : "", limits_deg[i]);
-        pair(out, "to_deg", limits_deg[i + 1]);
+        fprintf(out, "%s{\"from_deg\":%g", i ? "," : "", image_ring_limits_deg[i]);
+        pair(out, "to_deg", image_ring_limits_deg[i + 1]);
         fputc(',', out);
         write_error(out, &row->rings[i], true);
         pair(out, "flicker_excess", row->rings[i].flicker_excess);

@@ -1,5 +1,7 @@
 // fovbench: speed against error. Without a word it measures; words are what is done with what was measured.
 #include "app/command/options.h"
+#include "app/fovbench/compare.h"
+#include "app/fovbench/figures.h"
 #include "app/fovbench/request.h"
 #include "app/fovbench/sweep.h"
 
@@ -12,6 +14,10 @@ int main(int argc, char **argv)
         printf("fovbench %s\n", FOVSTUDY_VERSION);
         return EXIT_DONE;
     }
+    if (argc > 1 && strcmp(argv[1], "compare") == 0)
+        return command_compare(argc - 1, argv + 1);
+    if (argc > 1 && strcmp(argv[1], "figures") == 0)
+        return command_figures(argc - 1, argv + 1);
     int status = request_read(&request, argc, argv);
     return status >= 0 ? status : sweep(&request);
 }

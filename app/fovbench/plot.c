@@ -10,7 +10,8 @@
 
 #define PANEL_WIDTH 470.0
 #define PANEL_HEIGHT 330.0
-#define LEGEND_HEIGHT 30.0
+#define LEGEND_HEIGHT 44.0
+#define LEAST_WIDTH 760.0
 #define SHEET_MARGIN 8.0
 
 // One measure of a group's modes over their times.
@@ -33,9 +34,11 @@ static void weighted_psnr(const struct row *row, double *out_value, double *out_
     *out_cost = -row->error.wpsnr_db;
 }
 
+// So it is with a FLIP of 0: without it the axis shows how the others differ.
 static void flip(const struct row *row, double *out_value, double *out_cost)
 {
-    *out_value = *out_cost = row->error.flip;
+    *out_cost = row->error.flip;
+    *out_value = row->error.flip > 0 ? row->error.flip : (double)NAN;
 }
 
 static const struct measure measures[] = {
@@ -151,7 +154,7 @@ static void write_legend(FILE *out, const struct row *rows, size_t mode_count)
 {
     struct chart_series series[REQUEST_MODES + 4];
     size_t count = 0;
-    for (size_t i = 0; i < mode_count; i++)
+    for (size_t i = 1; i < mode_count; i++) // regular is a line
         series[count++] =
             (struct chart_series){.name = rows[i].mode, .style = CHART_POINTS, .colour = colour_of(rows, i)};
     series[count++] = (struct chart_series){
@@ -159,23 +162,30 @@ static void write_legend(FILE *out, const struct row *rows, size_t mode_count)
     series[count++] = (struct chart_series){.name = "Pareto front", .style = CHART_STEP, .colour = CHART_GRAY};
     series[count++] = (struct chart_series){
         .name = "time of regular", .style = CHART_LINE, .colour = CHART_GRAY, .dashed = true};
-    chart_legend(out, series, count, 16, CHART_HEADING + 14, MEASURES * PANEL_WIDTH);
+    chart_legend(out, series, count, 16, CHART_HEADING + 10, LEAST_WIDTH - 32);
+}
+
+// FLIP stands beside PSNR only where it was measured.
+static size_t measure_count(const struct row *rows)
+{
+    return isnan(rows[0].error.flip) ? 1 : MEASURES;
 }
 
 bool plot_write(FILE *out, const struct row *rows, size_t group_count, size_t mode_count)
 {
     char subtitle[512];
     const double top = CHART_HEADING + LEGEND_HEIGHT;
+    const size_t shown = measure_count(rows);
     bool ok = true;
     snprintf(subtitle, sizeof subtitle,
              "%s; median of %llu frames, errors against regular over %llu of them%s%s", rows[0].device,
              (unsigned long long)rows[0].frames, (unsigned long long)rows[0].error_frames,
              rows[0].ssao ? "; SSAO" : "", rows[0].taa ? "; TAA" : "");
-    chart_begin(out, MEASURES * PANEL_WIDTH + 2 * SHEET_MARGIN,
+    chart_begin(out, fmax((double)shown * PANEL_WIDTH + 2 * SHEET_MARGIN, LEAST_WIDTH),
                 top + (double)group_count * PANEL_HEIGHT + SHEET_MARGIN, "Error over time", subtitle);
     write_legend(out, rows, mode_count);
     for (size_t g = 0; g < group_count; g++)
-        for (size_t i = 0; ok && i < MEASURES; i++)
+        for (size_t i = 0; ok && i < shown; i++)
             ok = write_panel(out, rows + g * mode_count, mode_count, &measures[i],
                              (struct chart_rect){SHEET_MARGIN + (double)i * PANEL_WIDTH,
                                                  top + (double)g * PANEL_HEIGHT, PANEL_WIDTH, PANEL_HEIGHT});

@@ -6,16 +6,13 @@
 #include <string.h>
 
 static const char about[] =
-    "Draws every mode on the same frames of a scene's camera path, frame by frame in turn, and measures time "
-    "and error.\n"
-    "The first of the modes is always 'regular': times are also given as its ratio to each mode, and errors "
-    "are\n"
-    "against its picture of the same frame. Modes, scenes, sizes and gazes take several values each; every "
-    "scene is\n"
-    "measured at every size with every gaze.\n"
+    "Draws every mode on the same frames of a scene's camera path, frame by frame in turn, and measures\n"
+    "time and error. The first mode is always 'regular': the others' times are also given as ratios to its\n"
+    "time in the same frame, and errors are against its picture. Modes, scenes, sizes and gazes take several\n"
+    "values each; every scene is measured at every size with every gaze.\n"
     "\n"
-    "also: fovbench compare OLD.csv NEW.csv    what got slower or worse\n"
-    "      fovbench figures FILE.csv... -o DIR figures like the paper's 6, 10, 12, 13 and 14";
+    "also: fovbench compare OLD.csv NEW.csv      what got slower or worse\n"
+    "      fovbench figures FILE.csv... -o DIR   figures like the paper's 6, 10, 12, 13 and 14";
 
 enum option {
     MODES,
@@ -58,7 +55,8 @@ static const struct option_spec specs[OPTIONS + 1] = {
     [PASS_TIMES] = {"pass-times", NULL, "each pass's time from a second walk with one submission per pass"},
     [ERROR_EVERY] = {"error-every", "N",
                      "compare pictures at every N-th frame (a twelfth of --frames, at least 2)"},
-    [STILL_FRAMES] = {"still-frames", "N", "frames of the still stretch for flicker_still (30)"},
+    [STILL_FRAMES] = {"still-frames", "N",
+                      "frames of the still stretch for flicker_still, 4 to 256; 0 for none (30)"},
     [SUPERSAMPLED] = {"supersampled", "N",
                       "frames also compared with a supersampled reference, in the JSON (0)"},
     [NO_ERRORS] = {"no-errors", NULL, "measure time only"},
@@ -156,9 +154,9 @@ static int take_number(struct request *r, int option, const char *text)
                    ? -1
                    : wrong(option, text, "a whole number from 1 to 1000000");
     case STILL_FRAMES:
-        return options_uint64(text, 0, 10000, &r->still_frames)
+        return (options_uint64(text, 0, 0, &r->still_frames) || options_uint64(text, 4, 256, &r->still_frames))
                    ? -1
-                   : wrong(option, text, "a whole number from 0 to 10000");
+                   : wrong(option, text, "0 or a whole number from 4 to 256");
     case SUPERSAMPLED:
         return options_uint64(text, 0, 10000, &r->supersampled)
                    ? -1
@@ -223,6 +221,8 @@ static int complete(struct request *r, bool no_errors, bool modes_said)
         r->still_frames = r->error_every = 0;
     else if (r->error_every == 0)
         r->error_every = r->frames / 12 > 2 ? r->frames / 12 : 2;
+    if (r->error_every > r->frames)
+        r->error_every = r->frames;
     return -1;
 }
 

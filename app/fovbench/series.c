@@ -18,7 +18,7 @@ void series_finish(struct series *series)
     *series = (struct series){0};
 }
 
-void series_add(struct series *series, const struct frame_stats *stats)
+void series_add(struct series *series, const struct frame_stats *stats, double moving_share)
 {
     if (series->count == series->capacity)
         return;
@@ -30,7 +30,7 @@ void series_add(struct series *series, const struct frame_stats *stats)
                                                        .submodels = stats->submodels,
                                                        .frustum_submodels = stats->frustum_submodels,
                                                        .redraw = stats->redraw,
-                                                       .moving_share = (double)NAN};
+                                                       .moving_share = moving_share};
 }
 
 bool series_times(const struct series *series, struct series_times *out)

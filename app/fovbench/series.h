@@ -14,7 +14,7 @@ struct sample {
     double gpu_ms, cpu_ms;
     uint64_t shaded_px, triangles, frustum_triangles, submodels, frustum_submodels;
     enum frame_redraw redraw;
-    double moving_share; // of the pixels of both eyes, NaN where it was not measured
+    double moving_share; // of the pixels of both eyes; NaN where it was not measured
 };
 
 struct series {
@@ -24,7 +24,8 @@ struct series {
 
 bool series_init(struct series *series, size_t capacity); // false: no memory
 void series_finish(struct series *series);
-void series_add(struct series *series, const struct frame_stats *stats); // at most `capacity` times
+// At most `capacity` times; moving_share is NaN where it was not measured.
+void series_add(struct series *series, const struct frame_stats *stats, double moving_share);
 
 struct series_times {
     double gpu_ms_median, gpu_ms_p95, gpu_ms_p99, cpu_ms_median;
