@@ -41,6 +41,8 @@ struct renderer_option {
     uint64_t last_number;
     double last_animation_s;
     bool last_moving;
+    struct frame_eye last_eyes[EYES];
+    struct renderer_settings settings;
     struct dvec3 last_origin;
 };
 
@@ -157,6 +159,7 @@ struct renderer_option *renderer_option_create(struct renderer *r, struct render
     o->renderer = r;
     o->scene = scene;
     o->mode = choice->mode;
+    o->settings = settings ? *settings : (struct renderer_settings){0};
     const VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
     const struct mode_setup setup = {.gpu = r->gpu,
                                      .scene = scene->gpu,
@@ -164,7 +167,7 @@ struct renderer_option *renderer_option_create(struct renderer *r, struct render
                                      .width = r->width,
                                      .height = r->height,
                                      .values = choice->values,
-                                     .settings = settings ? *settings : (struct renderer_settings){0},
+                                     .settings = o->settings,
                                      .frame = &o->constants,
                                      .counters = &o->counters,
                                      .explanation = &o->explanation};
@@ -239,17 +242,34 @@ static void fill_planes(struct shared_eye *out, const struct frame_eye *eye, str
     out->forward[3] = (float)-dvec3_dot(forward, position);
 }
 
-static void fill_eye(struct shared_eye *out, const struct frame_eye *eye, struct dvec3 origin)
+// The frustum that shows what the unjittered one has at a pixel, `jitter` pixels further right and down.
+static struct viewing_fov jittered(const struct viewing_fov *f, const double jitter[2], uint32_t width,
+                                   uint32_t height)
 {
-    const struct viewing_fov *f = &eye->fov;
+    const double x = jitter[0] * (f->tan_left + f->tan_right) / width,
+                 y = jitter[1] * (f->tan_down + f->tan_up) / height;
+    return (struct viewing_fov){f->tan_left + x, f->tan_right - x, f->tan_down - y, f->tan_up + y};
+}
+
+static struct fmat4 clip_from_world(const struct pose *pose, const struct viewing_fov *f, struct dvec3 origin)
+{
     struct fmat4 projection =
         geometry_projection(f->tan_left, f->tan_right, f->tan_down, f->tan_up, VIEWING_NEAR_M);
-    struct fmat4 view = geometry_view(&eye->pose, origin);
-    struct fmat4 clip = fmat4_multiply(&projection, &view);
+    struct fmat4 view = geometry_view(pose, origin);
+    return fmat4_multiply(&projection, &view);
+}
+
+static void fill_eye(struct shared_eye *out, const struct frame_eye *eye, const struct frame_eye *last,
+                     const struct viewing_fov *drawn, struct dvec3 origin)
+{
+    const struct viewing_fov *f = &eye->fov;
+    struct fmat4 clip = clip_from_world(&eye->pose, drawn, origin);
+    struct fmat4 last_clip = clip_from_world(&last->pose, &last->fov, origin);
     struct dmat4 world_from_eye =
         dmat4_compose(eye->pose.position, eye->pose.orientation, (struct dvec3){1, 1, 1});
     struct fmat4 relative = geometry_relative(&world_from_eye, origin);
     memcpy(out->clip_from_world, clip.m, sizeof clip.m);
+    memcpy(out->last_clip_from_world, last_clip.m, sizeof last_clip.m);
     memcpy(out->world_from_eye, relative.m, sizeof relative.m);
     const double tangents[4] = {f->tan_left, f->tan_right, f->tan_down, f->tan_up};
     for (int i = 0; i < 4; i++)
@@ -258,7 +278,20 @@ static void fill_eye(struct shared_eye *out, const struct frame_eye *eye, struct
         store3(out->gaze, viewing_direction(eye->gaze_x_deg, eye->gaze_y_deg));
         out->gaze[3] = 1;
     }
-    fill_planes(out, eye, dvec3_sub(eye->pose.position, origin));
+    struct frame_eye seen = *eye;
+    seen.fov = *drawn;
+    fill_planes(out, &seen, dvec3_sub(eye->pose.position, origin));
+}
+
+// Halton's points of bases 2 and 3, eight in turn (Karis 2014), around the pixel's centre.
+static double halton(uint64_t index, uint64_t base)
+{
+    double value = 0, share = 1;
+    for (; index; index /= base) {
+        share /= (double)base;
+        value += share * (double)(index % base);
+    }
+    return value;
 }
 
 static void fill_constants(struct renderer_option *o, const struct frame *frame)
@@ -271,8 +304,17 @@ static void fill_constants(struct renderer_option *o, const struct frame *frame)
                                  .moving = frame->moving};
     scene_gpu_constants(scene, out);
     shadow_constants(&o->scene->shadow, scene->origin, out);
-    for (int eye = 0; eye < EYES; eye++)
-        fill_eye(&out->eyes[eye], &frame->eyes[eye], scene->origin);
+    double jitter[2] = {0, 0};
+    for (int axis = 0; o->settings.taa && axis < 2; axis++)
+        jitter[axis] = halton(frame->number % 8 + 1, axis ? 3 : 2) - 0.5;
+    for (int eye = 0; eye < EYES; eye++) {
+        const struct frame_eye *last = o->drawn ? &o->last_eyes[eye] : &frame->eyes[eye];
+        const struct viewing_fov drawn =
+            jittered(&frame->eyes[eye].fov, jitter, o->renderer->width, o->renderer->height);
+        fill_eye(&out->eyes[eye], &frame->eyes[eye], last, &drawn, scene->origin);
+    }
+    for (int axis = 0; axis < 2; axis++)
+        out->jitter[axis] = (float)jitter[axis];
     store3(out->origin_shift, dvec3_sub(o->last_origin, scene->origin));
 }
 
@@ -346,7 +388,11 @@ bool renderer_draw(struct renderer_option *o, const struct frame *frame, struct 
                      history ? o->last_animation_s : frame->animation_s);
     fill_constants(o, frame);
     memset(o->counters.mapped, 0, sizeof(struct shared_counters));
-    const struct mode_record record = {.gpu_frame = &r->frame, .history = history, .result = &o->result};
+    const struct mode_record record = {.gpu_frame = &r->frame,
+                                       .number = frame->number,
+                                       .history = history,
+                                       .moving = frame->moving,
+                                       .result = &o->result};
     if (!o->mode->record(o->state, &record))
         return false;
     const double recorded = now_ms();
@@ -356,6 +402,7 @@ bool renderer_draw(struct renderer_option *o, const struct frame *frame, struct 
     o->last_number = frame->number;
     o->last_animation_s = frame->animation_s;
     o->last_moving = frame->moving;
+    memcpy(o->last_eyes, frame->eyes, sizeof o->last_eyes);
     o->last_origin = o->scene->gpu->origin;
     if (out_stats)
         fill_stats(o, redraw, recorded - start, out_stats);
@@ -419,6 +466,12 @@ bool renderer_read(struct renderer_option *o, int eye, uint8_t *out_rgba)
 bool renderer_read_screen(struct renderer *r, int eye, uint8_t *out_rgba)
 {
     return r->screen.used && read_image(r, &r->screen.image, 0, (uint32_t)eye * r->width, 4, out_rgba);
+}
+
+bool renderer_read_motion(struct renderer_option *o, int eye, float *out_xyzw)
+{
+    return o->drawn && o->result.motion &&
+           read_image(o->renderer, o->result.motion, (uint32_t)eye, 0, 4 * sizeof(float), (uint8_t *)out_xyzw);
 }
 
 bool renderer_read_redraw_map(struct renderer_option *o, int eye, uint8_t *out)

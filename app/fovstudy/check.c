@@ -1,9 +1,9 @@
 // `fovstudy check`: reads a protocol as `run` would and prints a participant's exact trials; no GPU, nothing
 // written.
+#include "app/command/options.h"
 #include "app/fovstudy/catalogue.h"
 #include "app/fovstudy/check_number.h"
 #include "app/fovstudy/commands.h"
-#include "app/fovstudy/options.h"
 #include "studies/engine/plan.h"
 #include "studies/store/store.h"
 
@@ -37,7 +37,7 @@ static int set(struct request *out, int option, const char *value)
     switch (option) {
     case OPTIONS_WORD:
         if (out->protocol)
-            return options_wrong("check", "one protocol at a time, not also '%s'", value);
+            return options_wrong("fovstudy check", "one protocol at a time, not also '%s'", value);
         out->protocol = value;
         return -1;
     case PARTICIPANT:
@@ -48,19 +48,22 @@ static int set(struct request *out, int option, const char *value)
         return -1;
     case NUMBER:
         out->has_number = options_uint64(value, 1, 1000000, &out->number);
-        return out->has_number ? -1
-                               : options_wrong("check", "--number '%s' is no number from 1 to 1000000", value);
+        return out->has_number
+                   ? -1
+                   : options_wrong("fovstudy check", "--number '%s' is no number from 1 to 1000000", value);
     case SEED:
         out->has_seed = options_uint64(value, 0, INT64_MAX, &out->seed);
-        return out->has_seed ? -1 : options_wrong("check", "--seed '%s' is no number from 0 to 2^63-1", value);
+        return out->has_seed
+                   ? -1
+                   : options_wrong("fovstudy check", "--seed '%s' is no number from 0 to 2^63-1", value);
     case COUNTS:
         return options_uint64(value, 1, 100000, &out->counts)
                    ? -1
-                   : options_wrong("check", "--counts '%s' is no number from 1 to 100000", value);
+                   : options_wrong("fovstudy check", "--counts '%s' is no number from 1 to 100000", value);
     case SCENE:
         return study_bind_scene(out->scenes, &out->scene_count, value, error, sizeof error)
                    ? -1
-                   : options_wrong("check", "%s", error);
+                   : options_wrong("fovstudy check", "%s", error);
     default:
         out->json = true;
         return -1;
@@ -71,11 +74,11 @@ static int read_request(struct request *out, int argc, char **argv)
 {
     struct options options;
     *out = (struct request){.number = 1};
-    options_start(&options, argc, argv, "check", specs);
+    options_start(&options, argc, argv, "fovstudy check", specs);
     for (int i = options_next(&options); i != OPTIONS_DONE; i = options_next(&options)) {
         if (i == OPTIONS_HELP) {
             options_help(
-                stdout, "check PROTOCOL [--participant CODE --db FILE | --number N] [--json]",
+                stdout, "fovstudy check PROTOCOL [--participant CODE --db FILE | --number N] [--json]",
                 "Checks a protocol and prints the trials that a participant would get, in their order.", specs);
             return EXIT_DONE;
         }
@@ -86,7 +89,7 @@ static int read_request(struct request *out, int argc, char **argv)
             return status;
     }
     if (!out->protocol)
-        return options_wrong("check", "which protocol? name its file");
+        return options_wrong("fovstudy check", "which protocol? name its file");
     return -1;
 }
 

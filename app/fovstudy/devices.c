@@ -1,7 +1,7 @@
 // `fovstudy devices`: what can draw and what can show.
+#include "app/command/options.h"
 #include "app/display/monitors.h"
 #include "app/fovstudy/commands.h"
-#include "app/fovstudy/options.h"
 #include "renderer/renderer.h"
 
 #include <stdio.h>
@@ -20,17 +20,17 @@ int command_devices(int argc, char **argv)
     struct options options;
     char error[512] = "";
     struct renderer_desc desc = {.log = {.write = keep_error, .user = error}, .width = 16, .height = 16};
-    options_start(&options, argc, argv, "devices", specs);
+    options_start(&options, argc, argv, "fovstudy devices", specs);
     for (int i = options_next(&options); i != OPTIONS_DONE; i = options_next(&options)) {
         if (i == OPTIONS_HELP) {
-            options_help(stdout, "devices [--device NAME]",
+            options_help(stdout, "fovstudy devices [--device NAME]",
                          "Names the GPU that would be used, and the monitors for --display monitor:N.", specs);
             return EXIT_DONE;
         }
         if (i == OPTIONS_ERROR)
             return EXIT_USAGE;
         if (i == OPTIONS_WORD)
-            return options_wrong("devices", "'%s' is not expected here", options.value);
+            return options_wrong("fovstudy devices", "'%s' is not expected here", options.value);
         desc.device = options.value;
     }
     struct renderer *renderer = renderer_create(&desc);

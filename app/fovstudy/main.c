@@ -1,6 +1,6 @@
 // fovstudy: runs perceptual studies of foveated rendering. A table of subcommands, nothing more.
+#include "app/command/options.h"
 #include "app/fovstudy/commands.h"
-#include "app/fovstudy/options.h"
 
 #include <stdio.h>
 #include <string.h>

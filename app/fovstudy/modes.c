@@ -1,7 +1,7 @@
 // `fovstudy modes`: the table of rendering modes, as the renderer has it.
+#include "app/command/json.h"
+#include "app/command/options.h"
 #include "app/fovstudy/commands.h"
-#include "app/fovstudy/json.h"
-#include "app/fovstudy/options.h"
 #include "renderer/mode.h"
 
 #include <stdio.h>
@@ -76,16 +76,17 @@ int command_modes(int argc, char **argv)
     static const struct option_spec specs[] = {{"json", NULL, "print JSON"}, {NULL, NULL, NULL}};
     struct options options;
     bool json = false;
-    options_start(&options, argc, argv, "modes", specs);
+    options_start(&options, argc, argv, "fovstudy modes", specs);
     for (int i = options_next(&options); i != OPTIONS_DONE; i = options_next(&options)) {
         if (i == OPTIONS_HELP) {
-            options_help(stdout, "modes [--json]", "Lists every rendering mode with its parameters.", specs);
+            options_help(stdout, "fovstudy modes [--json]", "Lists every rendering mode with its parameters.",
+                         specs);
             return EXIT_DONE;
         }
         if (i == OPTIONS_ERROR)
             return EXIT_USAGE;
         if (i == OPTIONS_WORD)
-            return options_wrong("modes", "'%s' is not expected here", options.value);
+            return options_wrong("fovstudy modes", "'%s' is not expected here", options.value);
         json = true;
     }
     if (json)

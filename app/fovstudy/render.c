@@ -1,8 +1,9 @@
 // `fovstudy render`: walks a scene's camera path in one mode and writes pictures.
+#include "app/command/options.h"
+#include "app/command/output.h"
+#include "app/command/png.h"
+#include "app/command/walk.h"
 #include "app/fovstudy/commands.h"
-#include "app/fovstudy/options.h"
-#include "app/fovstudy/png.h"
-#include "app/gaze/script.h"
 #include "renderer/renderer.h"
 
 #include <errno.h>
@@ -10,7 +11,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 // What draws: the mode asked for and, where there is one, the mode it is held against.
 struct drawing {
@@ -22,21 +22,16 @@ struct difference {
     int max;
 };
 
-enum gaze_kind { GAZE_AT, GAZE_SCRIPT };
-
 struct request {
     struct mode_choice choice;
     struct mode_choice against; // mode NULL: none
+    struct renderer_settings settings;
     const char *scene;
     const char *out; // NULL: no pictures
     const char *device;
     uint64_t frames;
-    uint32_t width, height;
-    enum gaze_kind gaze;
-    double gaze_x_deg, gaze_y_deg;
-    double fov_deg;
-    double start_s;
-    bool explain, all, still, rest, redraw_map, times;
+    struct walk walk;
+    bool explain, all, redraw_map, times;
 };
 
 enum {
@@ -50,6 +45,8 @@ enum {
     OPTION_FOV,
     OPTION_START,
     OPTION_STILL,
+    OPTION_SSAO,
+    OPTION_TAA,
     OPTION_REST,
     OPTION_ALL,
     OPTION_REDRAW_MAP,
@@ -71,6 +68,8 @@ static const struct option_spec specs[] = {
                      "where the eyes look; degrees, right and up positive (centre)"},
     [OPTION_FOV] = {"fov", "DEG", "vertical field of view (100)"},
     [OPTION_START] = {"start", "S", "where on the path to begin, seconds (0)"},
+    [OPTION_SSAO] = {"ssao", NULL, "with ambient occlusion"},
+    [OPTION_TAA] = {"taa", NULL, "with temporal antialiasing"},
     [OPTION_STILL] = {"still", NULL, "keep the camera where it starts"},
     [OPTION_REST] = {"rest", NULL, "keep moving objects at rest"},
     [OPTION_ALL] = {"all", NULL, "write every frame, not only the last"},
@@ -81,50 +80,36 @@ static const struct option_spec specs[] = {
     {NULL, NULL, NULL},
 };
 
-static bool read_gaze(const char *text, struct request *out)
-{
-    char *end = NULL;
-    out->gaze = GAZE_AT;
-    if (strcmp(text, "script") == 0) {
-        out->gaze = GAZE_SCRIPT;
-        return true;
-    }
-    if (strcmp(text, "centre") == 0) {
-        out->gaze_x_deg = out->gaze_y_deg = 0;
-        return true;
-    }
-    out->gaze_x_deg = strtod(text, &end);
-    if (end == text || *end != ',')
-        return false;
-    const char *second = end + 1;
-    out->gaze_y_deg = strtod(second, &end);
-    return end != second && !*end && fabs(out->gaze_x_deg) <= 180 && fabs(out->gaze_y_deg) <= 90;
-}
-
 static const char *wrong_value(int option, const char *value, struct request *r)
 {
     switch (option) {
     case OPTION_FRAMES:
         return options_uint64(value, 1, 1000000, &r->frames) ? NULL : "a whole number from 1 to 1000000";
     case OPTION_SIZE:
-        return options_size(value, &r->width, &r->height) ? NULL : "WIDTHxHEIGHT, 16 to 16384 each";
+        return options_size(value, &r->walk.width, &r->walk.height) ? NULL : "WIDTHxHEIGHT, 16 to 16384 each";
     case OPTION_GAZE:
-        return read_gaze(value, r) ? NULL : "centre, script or X,Y in degrees";
+        return walk_gaze_read(value, &r->walk.gaze) ? NULL : "centre, script or X,Y in degrees";
     case OPTION_FOV:
-        return options_double(value, 1, 170, &r->fov_deg) ? NULL : "a number of degrees from 1 to 170";
+        return options_double(value, 1, 170, &r->walk.fov_deg) ? NULL : "a number of degrees from 1 to 170";
     default:
-        return options_double(value, 0, 1e6, &r->start_s) ? NULL : "a number of seconds from 0 to 1000000";
+        return options_double(value, 0, 1e6, &r->walk.start_s) ? NULL : "a number of seconds from 0 to 1000000";
     }
 }
 
 static void take_flag(int option, struct request *r)
 {
     switch (option) {
+    case OPTION_SSAO:
+        r->settings.ssao = true;
+        break;
+    case OPTION_TAA:
+        r->settings.taa = true;
+        break;
     case OPTION_STILL:
-        r->still = true;
+        r->walk.still = true;
         break;
     case OPTION_REST:
-        r->rest = true;
+        r->walk.rest = true;
         break;
     case OPTION_ALL:
         r->all = true;
@@ -147,19 +132,19 @@ static int read_options(int argc, char **argv, struct request *r)
     struct options options;
     const char *mode = NULL, *against = NULL;
     char error[1024];
-    options_start(&options, argc, argv, "render", specs);
+    options_start(&options, argc, argv, "fovstudy render", specs);
     for (int i = options_next(&options); i != OPTIONS_DONE; i = options_next(&options)) {
         const char *expected = NULL;
         if (i == OPTIONS_ERROR)
             return EXIT_USAGE;
         if (i == OPTIONS_HELP) {
-            options_help(stdout, "render --mode MODE[:p=v,...] --scene NAME|FILE [--out DIR] [options]",
-                         "Walks a scene's camera path in one mode and writes the last frame, one PNG per eye.",
-                         specs);
+            options_help(
+                stdout, "fovstudy render --mode MODE[:p=v,...] --scene NAME|FILE [--out DIR] [options]",
+                "Walks a scene's camera path in one mode and writes the last frame, one PNG per eye.", specs);
             return EXIT_DONE;
         }
         if (i == OPTIONS_WORD)
-            return options_wrong("render", "'%s' is not expected here", options.value);
+            return options_wrong("fovstudy render", "'%s' is not expected here", options.value);
         if (!specs[i].argument)
             take_flag(i, r);
         else if (i == OPTION_MODE)
@@ -173,15 +158,16 @@ static int read_options(int argc, char **argv, struct request *r)
         else if (i == OPTION_DEVICE)
             r->device = options.value;
         else if ((expected = wrong_value(i, options.value, r)))
-            return options_wrong("render", "--%s is '%s', not %s", specs[i].name, options.value, expected);
+            return options_wrong("fovstudy render", "--%s is '%s', not %s", specs[i].name, options.value,
+                                 expected);
     }
     if (!mode || !r->scene)
-        return options_wrong("render", "%s is missing", mode ? "--scene" : "--mode");
+        return options_wrong("fovstudy render", "%s is missing", mode ? "--scene" : "--mode");
     if (!r->out && !r->explain && !r->times)
-        return options_wrong("render", "--out DIR is missing (or --explain, or --times)");
+        return options_wrong("fovstudy render", "--out DIR is missing (or --explain, or --times)");
     if (!mode_parse(mode, &r->choice, error, sizeof error) ||
         (against && !mode_parse(against, &r->against, error, sizeof error)))
-        return options_wrong("render", "%s", error);
+        return options_wrong("fovstudy render", "%s", error);
     return -1;
 }
 
@@ -192,28 +178,13 @@ static void print_error(void *user, enum renderer_log_level level, const char *s
         fprintf(stderr, "fovstudy: %s\n", sentence);
 }
 
-static void make_frame(const struct request *r, const struct scene *scene, uint64_t number, struct frame *out)
-{
-    const double time_s = r->start_s + (double)number / 90; // DESIGN section 3: paths advance 1/90 s a frame
-    struct pose head = camera_path_pose(&scene->path, r->still ? r->start_s : time_s);
-    double x_deg = r->gaze_x_deg, y_deg = r->gaze_y_deg;
-    if (r->gaze == GAZE_SCRIPT)
-        gaze_script(1, time_s, &x_deg, &y_deg);
-    *out = (struct frame){.number = number, .moving = !r->rest, .animation_s = r->rest ? 0 : time_s};
-    for (int eye = 0; eye < EYES; eye++)
-        out->eyes[eye] = (struct frame_eye){.pose = viewing_eye_pose(&head, eye, VIEWING_DEFAULT_IPD_M),
-                                            .fov = viewing_symmetric_fov(r->fov_deg, r->width, r->height),
-                                            .gaze_x_deg = x_deg,
-                                            .gaze_y_deg = y_deg};
-}
-
 static bool write_picture(const struct request *r, uint64_t number, int eye, const char *what, int channels,
                           const uint8_t *pixels)
 {
     char path[4096];
     snprintf(path, sizeof path, "%s/%04llu-%s%s.png", r->out, (unsigned long long)number,
              eye ? "right" : "left", what);
-    if (png_write(path, r->width, r->height, channels, pixels))
+    if (png_write(path, r->walk.width, r->walk.height, channels, pixels))
         return true;
     fprintf(stderr, "fovstudy: cannot write %s: %s\n", path, strerror(errno));
     return false;
@@ -240,7 +211,7 @@ static bool write_eye(const struct request *r, const struct drawing *d, uint64_t
         if (!renderer_read(d->against, eye, pixels[1]) ||
             !write_picture(r, number, eye, "-against", 4, pixels[1]))
             return false;
-        subtract(pixels[0], pixels[1], 4 * (size_t)r->width * r->height, pixels[1], difference);
+        subtract(pixels[0], pixels[1], 4 * (size_t)r->walk.width * r->walk.height, pixels[1], difference);
         if (!write_picture(r, number, eye, "-difference", 4, pixels[1]))
             return false;
     }
@@ -250,7 +221,7 @@ static bool write_eye(const struct request *r, const struct drawing *d, uint64_t
 
 static bool write_frame(const struct request *r, const struct drawing *d, uint64_t number)
 {
-    const size_t size = 4 * (size_t)r->width * r->height;
+    const size_t size = 4 * (size_t)r->walk.width * r->walk.height;
     uint8_t *pixels[2] = {malloc(size), malloc(size)};
     struct difference difference = {0};
     bool ok = pixels[0] && pixels[1];
@@ -266,7 +237,7 @@ static bool write_frame(const struct request *r, const struct drawing *d, uint64
 
 static void print_times(const struct request *r, const struct frame_stats *s)
 {
-    double all = 2.0 * r->width * r->height;
+    double all = 2.0 * r->walk.width * r->walk.height;
     printf("frame %llu: %.2f ms on the GPU, %.2f ms on the CPU; shaded %llu px (%.2f %%), %llu triangles in "
            "%llu submodels\n",
            (unsigned long long)r->frames - 1, s->gpu_ms, s->cpu_ms, (unsigned long long)s->shaded_px,
@@ -281,7 +252,7 @@ static bool walk(const struct request *r, const struct scene *scene, const struc
     struct frame_stats stats = {0};
     for (uint64_t n = 0; n < r->frames; n++) {
         struct frame frame;
-        make_frame(r, scene, n, &frame);
+        walk_frame(&r->walk, scene, n, &frame);
         if (!renderer_draw(drawing->option, &frame, &stats) ||
             (drawing->against && !renderer_draw(drawing->against, &frame, NULL)))
             return false;
@@ -295,16 +266,10 @@ static bool walk(const struct request *r, const struct scene *scene, const struc
 
 static bool make_folder(const char *path)
 {
-    char part[4096];
-    snprintf(part, sizeof part, "%s", path);
-    for (char *slash = strchr(part + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
-        *slash = '\0';
-        mkdir(part, 0777); // a failure shows at the last part
-        *slash = '/';
-    }
-    if (mkdir(part, 0777) == 0 || errno == EEXIST)
+    char error[4608];
+    if (output_make_folder(path, error, sizeof error))
         return true;
-    fprintf(stderr, "fovstudy: cannot make the folder %s: %s\n", path, strerror(errno));
+    fprintf(stderr, "fovstudy: %s\n", error);
     return false;
 }
 
@@ -312,17 +277,17 @@ static bool render(const struct request *r, const struct scene *scene)
 {
     const struct renderer_desc desc = {.log = {print_error, NULL},
                                        .device = r->device,
-                                       .width = r->width,
-                                       .height = r->height,
+                                       .width = r->walk.width,
+                                       .height = r->walk.height,
                                        .validation = getenv("FOVSTUDY_VALIDATION") != NULL,
                                        .pass_times = r->times};
     struct renderer *renderer = renderer_create(&desc);
     struct renderer_scene *uploaded = renderer ? renderer_scene_create(renderer, scene) : NULL;
     struct drawing drawing = {0};
     if (uploaded)
-        drawing.option = renderer_option_create(renderer, uploaded, &r->choice, NULL);
+        drawing.option = renderer_option_create(renderer, uploaded, &r->choice, &r->settings);
     if (drawing.option && r->against.mode)
-        drawing.against = renderer_option_create(renderer, uploaded, &r->against, NULL);
+        drawing.against = renderer_option_create(renderer, uploaded, &r->against, &r->settings);
     bool ok = drawing.option && (drawing.against || !r->against.mode);
     if (ok && r->explain) {
         char text[10240];
@@ -341,7 +306,8 @@ static bool render(const struct request *r, const struct scene *scene)
 
 int command_render(int argc, char **argv)
 {
-    struct request request = {.frames = 1, .width = 1280, .height = 1440, .fov_deg = VIEWING_DEFAULT_FOV_DEG};
+    struct request request = {.frames = 1,
+                              .walk = {.width = 1280, .height = 1440, .fov_deg = VIEWING_DEFAULT_FOV_DEG}};
     int status = read_options(argc, argv, &request);
     if (status >= 0)
         return status;

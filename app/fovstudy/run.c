@@ -1,6 +1,6 @@
 // `fovstudy run`: joins protocol, display, renderer, gaze and store, and runs one session.
+#include "app/command/options.h"
 #include "app/fovstudy/commands.h"
-#include "app/fovstudy/options.h"
 #include "app/fovstudy/run_study.h"
 #include "app/session/session.h"
 

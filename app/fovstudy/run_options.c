@@ -1,6 +1,6 @@
 #include "app/fovstudy/run_options.h"
 
-#include "app/fovstudy/options.h"
+#include "app/command/options.h"
 #include "stimuli/viewing.h"
 
 #include <stdlib.h>
@@ -56,7 +56,7 @@ static const char about[] =
 
 static int wrong_value(enum option option, const char *value, const char *want)
 {
-    return options_wrong("run", "--%s '%s' is not right: %s", specs[option].name, value, want);
+    return options_wrong("fovstudy run", "--%s '%s' is not right: %s", specs[option].name, value, want);
 }
 
 static int set_numbers(struct run_options *out, enum option option, const char *value)
@@ -89,7 +89,7 @@ static int set_lists(struct run_options *out, enum option option, const char *va
     if (option == SCENE)
         return study_bind_scene(out->scenes, &out->scene_count, value, error, sizeof error)
                    ? -1
-                   : options_wrong("run", "%s", error);
+                   : options_wrong("fovstudy run", "%s", error);
     if (out->attribute_count == RUN_ATTRIBUTES || !strchr(value, '='))
         return wrong_value(option, value, "NAME=VALUE, as the protocol's participant section names them");
     out->attributes[out->attribute_count++] = value;
@@ -101,7 +101,7 @@ static int set(struct run_options *out, int option, const char *value)
     switch (option) {
     case OPTIONS_WORD:
         if (out->protocol)
-            return options_wrong("run", "one protocol at a time, not also '%s'", value);
+            return options_wrong("fovstudy run", "one protocol at a time, not also '%s'", value);
         out->protocol = value;
         return -1;
     case DB:
@@ -139,14 +139,15 @@ static int set(struct run_options *out, int option, const char *value)
 static int check(const struct run_options *out)
 {
     if (!out->protocol)
-        return options_wrong("run", "which protocol? name its file");
+        return options_wrong("fovstudy run", "which protocol? name its file");
     if (!out->database)
-        return options_wrong("run", "where to? give --db FILE");
+        return options_wrong("fovstudy run", "where to? give --db FILE");
     if (!out->participant || !*out->participant)
-        return options_wrong("run", "who takes part? give --participant CODE");
+        return options_wrong("fovstudy run", "who takes part? give --participant CODE");
     bool blind = strcmp(out->display, "headless") == 0 || strcmp(out->display, "none") == 0;
     if (blind && !out->observer)
-        return options_wrong("run", "nobody can answer with --display %s; give --observer sim", out->display);
+        return options_wrong("fovstudy run", "nobody can answer with --display %s; give --observer sim",
+                             out->display);
     return -1;
 }
 
@@ -154,10 +155,10 @@ int run_options_read(struct run_options *out, int argc, char **argv)
 {
     struct options options;
     *out = (struct run_options){.display = "window", .fov_deg = VIEWING_DEFAULT_FOV_DEG};
-    options_start(&options, argc, argv, "run", specs);
+    options_start(&options, argc, argv, "fovstudy run", specs);
     for (int i = options_next(&options); i != OPTIONS_DONE; i = options_next(&options)) {
         if (i == OPTIONS_HELP) {
-            options_help(stdout, "run PROTOCOL --db FILE --participant CODE [options]", about, specs);
+            options_help(stdout, "fovstudy run PROTOCOL --db FILE --participant CODE [options]", about, specs);
             return EXIT_DONE;
         }
         if (i == OPTIONS_ERROR)

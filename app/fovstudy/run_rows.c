@@ -1,4 +1,4 @@
-#include "app/fovstudy/json.h"
+#include "app/command/json.h"
 #include "app/fovstudy/run_study.h"
 #include "app/session/record.h"
 

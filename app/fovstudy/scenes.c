@@ -1,7 +1,7 @@
 // `fovstudy scenes`: the built-in scenes; files are named by their path instead.
+#include "app/command/json.h"
+#include "app/command/options.h"
 #include "app/fovstudy/commands.h"
-#include "app/fovstudy/json.h"
-#include "app/fovstudy/options.h"
 #include "stimuli/builtin/builtin.h"
 
 #include <stdio.h>
@@ -38,10 +38,10 @@ int command_scenes(int argc, char **argv)
     static const struct option_spec specs[] = {{"json", NULL, "print JSON"}, {NULL, NULL, NULL}};
     struct options options;
     bool json = false;
-    options_start(&options, argc, argv, "scenes", specs);
+    options_start(&options, argc, argv, "fovstudy scenes", specs);
     for (int i = options_next(&options); i != OPTIONS_DONE; i = options_next(&options)) {
         if (i == OPTIONS_HELP) {
-            options_help(stdout, "scenes [--json]",
+            options_help(stdout, "fovstudy scenes [--json]",
                          "Lists the built-in scenes. Any glTF or GLB file is a scene too: give its path.",
                          specs);
             return EXIT_DONE;
@@ -49,7 +49,7 @@ int command_scenes(int argc, char **argv)
         if (i == OPTIONS_ERROR)
             return EXIT_USAGE;
         if (i == OPTIONS_WORD)
-            return options_wrong("scenes", "'%s' is not expected here", options.value);
+            return options_wrong("fovstudy scenes", "'%s' is not expected here", options.value);
         json = true;
     }
     if (json)

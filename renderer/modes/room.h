@@ -28,7 +28,9 @@ struct mode_setup {
 
 struct mode_record {
     struct gpu_frame *gpu_frame; // begun
+    uint64_t number;             // of the frame
     bool history;                // false: nothing from earlier frames may be used
+    bool moving;                 // objects move
     struct mode_result *result;  // set by the mode
 };
 
@@ -36,6 +38,7 @@ struct mode_record {
 struct mode_result {
     const struct gpu_image *colour;     // rgba8, sRGB-encoded, two layers, layout GENERAL
     const struct gpu_image *redraw_map; // r8 uint, GENERAL; NULL: everything was drawn
+    const struct gpu_image *motion;     // rgba32f, GENERAL; NULL: not kept
     bool counts_shaded;                 // the kernels counted shaded_px; otherwise it is every pixel
 };
 

@@ -48,7 +48,7 @@ static bool order_objects(struct scene_gpu *s)
 
 struct sortable {
     struct shared_item item;
-    uint64_t key; // material, winding, then the order of making, so that the sort is stable
+    uint64_t key; // material, motion, winding, then the order of making, so that the sort is stable
 };
 
 static int by_key(const void *a, const void *b)
@@ -64,7 +64,8 @@ static void collect(const struct scene_gpu *s, struct sortable *list)
     for (uint32_t object = 0; object < s->object_count; object++) {
         const struct scene_instance *instance = &scene->instances[s->object_instance[object]];
         const struct scene_mesh *mesh = &scene->meshes[instance->mesh];
-        bool mirrored = dmat4_determinant3(&s->now[instance->node]) < 0;
+        bool moving = object < s->moving_object_count,
+             mirrored = dmat4_determinant3(&s->now[instance->node]) < 0;
         for (uint32_t i = 0; i < mesh->submodel_count; i++) {
             const struct scene_submodel *sub = &scene->submodels[mesh->first_submodel + i];
             struct shared_item item = {.object = object,
@@ -73,7 +74,8 @@ static void collect(const struct scene_gpu *s, struct sortable *list)
                                        .index_count = sub->index_count};
             memcpy(item.box_min, sub->bounds.min, sizeof item.box_min);
             memcpy(item.box_max, sub->bounds.max, sizeof item.box_max);
-            list[n] = (struct sortable){item, (uint64_t)sub->material << 33 | (uint64_t)mirrored << 32 | n};
+            list[n] = (struct sortable){item, (uint64_t)sub->material << 34 | (uint64_t)moving << 33 |
+                                                  (uint64_t)mirrored << 32 | n};
             n++;
         }
     }
@@ -87,6 +89,7 @@ static void cut_buckets(struct scene_gpu *s, struct sortable *list)
             s->buckets[s->bucket_count++] = (struct scene_bucket){.material = list[i].item.material,
                                                                   .features = features_of(m),
                                                                   .mirrored = list[i].key >> 32 & 1,
+                                                                  .moving = list[i].key >> 33 & 1,
                                                                   .double_sided = m->double_sided,
                                                                   .first_item = i};
         }
@@ -135,7 +138,7 @@ bool draw_list_create(struct scene_gpu *s)
         s->item_count += scene->meshes[scene->instances[i].mesh].submodel_count;
     struct sortable *list = malloc((s->item_count + 1) * sizeof *list);
     struct shared_item *items = malloc((s->item_count + 1) * sizeof *items);
-    s->buckets = calloc(2 * scene->material_count + 1, sizeof *s->buckets);
+    s->buckets = calloc(4 * scene->material_count + 1, sizeof *s->buckets);
     bool ok = list && items && s->buckets;
     if (ok) {
         collect(s, list);

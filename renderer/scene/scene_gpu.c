@@ -139,7 +139,8 @@ static bool create_geometry(struct scene_gpu *s)
         return false;
     scene_pose(scene, 0, false, s->now);
     scene_pose(scene, 0, false, s->before);
-    const VkDeviceSize motions = (scene->moving_count + 1) * sizeof(struct fmat4);
+    s->motion_count = scene->moving_count + 1;
+    const VkDeviceSize motions = 2 * s->motion_count * sizeof(struct fmat4);
     return draw_list_create(s) &&
            gpu_buffer_create_filled(gpu, "vertices", scene->vertices,
                                     scene->vertex_count * sizeof *scene->vertices,
@@ -208,8 +209,8 @@ static struct shared_object place_object(const struct scene_gpu *s, uint32_t obj
     return placed;
 }
 
-// World now from world before for one moving instance, both relative to the present origin.
-static struct fmat4 motion_of(const struct scene_gpu *s, uint32_t node)
+// World `to` from world `from` for one moving instance, both relative to the present origin.
+static struct fmat4 motion_of(const struct scene_gpu *s, const struct dmat4 *to, const struct dmat4 *from)
 {
     struct dmat4 to_origin = dmat4_identity(), from_origin = dmat4_identity();
     for (int i = 0; i < 3; i++) {
@@ -217,8 +218,8 @@ static struct fmat4 motion_of(const struct scene_gpu *s, uint32_t node)
         to_origin.m[12 + i] = -o;
         from_origin.m[12 + i] = o;
     }
-    struct dmat4 mesh_from_before = dmat4_inverse(&s->before[node]);
-    struct dmat4 m = dmat4_multiply(&s->now[node], &mesh_from_before);
+    struct dmat4 mesh_from_world = dmat4_inverse(from);
+    struct dmat4 m = dmat4_multiply(to, &mesh_from_world);
     m = dmat4_multiply(&to_origin, &m);
     m = dmat4_multiply(&m, &from_origin);
     struct fmat4 narrow;
@@ -246,11 +247,14 @@ void scene_gpu_update(struct scene_gpu *s, VkCommandBuffer cmd, struct dvec3 pos
     struct shared_object *objects = s->staging.mapped;
     struct fmat4 *motions = (struct fmat4 *)(void *)(objects + s->object_count);
     struct dmat4 identity = dmat4_identity();
-    motions[0] = geometry_relative(&identity, (struct dvec3){0, 0, 0});
+    motions[0] = motions[s->motion_count] = geometry_relative(&identity, (struct dvec3){0, 0, 0});
     for (uint32_t i = 0; i < count; i++) {
         objects[i] = place_object(s, i);
-        if (objects[i].moving_id)
-            motions[objects[i].moving_id] = motion_of(s, s->scene->instances[s->object_instance[i]].node);
+        const uint32_t id = objects[i].moving_id, node = s->scene->instances[s->object_instance[i]].node;
+        if (id) {
+            motions[id] = motion_of(s, &s->now[node], &s->before[node]);
+            motions[s->motion_count + id] = motion_of(s, &s->before[node], &s->now[node]);
+        }
     }
     s->placed = true;
     gpu_barrier(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_2_COPY_BIT);

@@ -19,11 +19,12 @@ enum {
     // bits 0..SCENE_SLOTS-1: the texture slot is used
 };
 
-// Items drawn with one pipeline, one material and one winding.
+// Items drawn with one pipeline, one material and one winding, all moving or all static.
 struct scene_bucket {
     uint32_t material;
     uint32_t features;
     bool mirrored;
+    bool moving; // its objects have moving ids
     bool double_sided;
     uint32_t first_item, item_count;
     uint32_t first_group, group_count;
@@ -34,10 +35,12 @@ struct scene_gpu {
     const struct scene *scene; // borrowed
 
     struct gpu_buffer vertices, indices;
-    struct gpu_buffer items;     // shared_item, sorted by bucket
-    struct gpu_buffer groups;    // shared_cull_group
-    struct gpu_buffer objects;   // shared_object, moving ones first
-    struct gpu_buffer motions;   // mat4 by moving id: world now from world before
+    struct gpu_buffer items;   // shared_item, sorted by bucket
+    struct gpu_buffer groups;  // shared_cull_group
+    struct gpu_buffer objects; // shared_object, moving ones first
+    struct gpu_buffer
+        motions;           // mat4 by moving id: world now from world before, then as many the other way round
+    uint32_t motion_count; // of one way, with the identity at 0
     struct gpu_buffer materials; // shared_material
     struct gpu_buffer lights;    // shared_light
     struct gpu_buffer staging;   // objects and motions, written by the CPU

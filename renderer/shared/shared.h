@@ -31,12 +31,13 @@
 #define SHARED_TILES_FIRST 4 // word of a tile list (tiles.glsl) where the tiles begin
 
 struct shared_eye {
-    SHARED_MAT4(clip_from_world);
-    SHARED_MAT4(world_from_eye); // rotation and position
-    SHARED_VEC4(tangents);       // left, right, down, up; positive away from the axis
-    SHARED_VEC4(gaze);           // unit direction in the eye's frame; w = 0 where there is no valid gaze
-    SHARED_VEC4(planes[4]);      // left, right, bottom, top of the frustum, inward unit normals, world
-    SHARED_VEC4(forward);        // unit, world; w = -dot(forward, position): distance in front of the eye
+    SHARED_MAT4(clip_from_world);      // jittered
+    SHARED_MAT4(last_clip_from_world); // of the last frame, unjittered, relative to this frame's origin
+    SHARED_MAT4(world_from_eye);       // rotation and position
+    SHARED_VEC4(tangents);             // unjittered: left, right, down, up; positive away from the axis
+    SHARED_VEC4(gaze);                 // unit direction in the eye's frame; w = 0 where there is no valid gaze
+    SHARED_VEC4(planes[4]);            // left, right, bottom, top of the frustum, inward unit normals, world
+    SHARED_VEC4(forward);              // unit, world; w = -dot(forward, position): distance in front of the eye
 };
 
 struct shared_frame {
@@ -52,6 +53,7 @@ struct shared_frame {
     SHARED_UINT height;
     SHARED_UINT light_count;
     SHARED_UINT item_count;
+    SHARED_VEC2(jitter); // pixels: pixel p of the G-buffer shows the image at p + 0.5 - jitter
     SHARED_FLOAT near_m;
     SHARED_FLOAT exposure; // 0.18 / luminance
     SHARED_UINT moving;    // 0: moving ids are ignored, objects stand still
@@ -124,7 +126,7 @@ struct shared_counters {
 };
 
 #ifndef GL_core_profile
-_Static_assert(sizeof(struct shared_eye) == 16 * 4 * 2 + 16 * 7, "scalar layout has no padding");
+_Static_assert(sizeof(struct shared_eye) == 16 * 4 * 3 + 16 * 7, "scalar layout has no padding");
 _Static_assert(sizeof(struct shared_item) == 44, "scalar layout has no padding");
 _Static_assert(sizeof(struct shared_draw) == 20, "VkDrawIndexedIndirectCommand");
 #endif

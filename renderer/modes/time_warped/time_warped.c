@@ -1,34 +1,42 @@
 // `time_warped`: last frame's pixels reprojected, holes filled, and only what is not trusted drawn anew.
 //
 // Franke, Fink, Martschinke, Selgrad and Stamminger, "Time-Warped Foveated Rendering for Virtual Reality
-// Headsets", Computer Graphics Forum 40(1), 2021: sections 4 (reprojection), 5.1 (hole filling), 5.2
-// (confidence), 6.1 (discard), 6.2 (composition) and the motion of objects of section 7. We differ from the
-// paper in this:
-// - points are splatted by 64-bit atomics instead of drawn as sprites (reproject.h);
+// Headsets", Computer Graphics Forum 40(1), 2021: sections 4 to 7. We differ from the paper in this:
+// - `splat` atomic resolves points by 64-bit atomics instead of drawing them as sprites (reproject.h); both
+// give the
+//   same pixels;
+// - a pixel that shows through between the spread pixels of a nearer surface is a hole (resolve.comp);
 // - pixels are not discarded in the fragment shader: kept pixels get the nearest depth first, so that the depth
 //   test rejects their fragments before they are shaded;
 // - a hole takes the finest level that has a value at its place, blended bilinearly between that level's valid
-//   texels; the paper says only that the level is chosen by the hole's size;
+//   texels of its kind; the paper says only that the level is chosen by the hole's size;
+// - the background is a direction with a class of its own: it is reprojected, and surfaces' holes never take
+// its colour;
 // - colours are averaged, and L is measured, in the tone-mapped and encoded 8-bit values that are kept;
 // - the pyramid ends where A^m < epsilon, since deeper holes are redrawn whatever their colour;
-// - the pyramid holds no depths: only motion smoothing (6.2) reads them;
+// - the or-pyramid of the redraw map begins at 8x8 pixels, and a box is looked up in 4x4 of its texels, not
+// 2x2;
+// - moving pixels are redrawn by whole tiles in turn, every as many frames as D^t needs to fall under epsilon,
+// and
+//   moving objects' boxes every six frames (movers.h);
 // - the age t of a moving object's pixel counts to 63, so with D above epsilon^(1/63), 0.975 at epsilon 0.2,
 //   age alone never redraws it.
 
-#include "renderer/modes/room.h"
+#include "renderer/modes/deferred.h"
 #include "renderer/passes/compose/compose.h"
-#include "renderer/passes/cull/cull.h"
-#include "renderer/passes/gbuffer/gbuffer.h"
+#include "renderer/passes/movers/movers.h"
 #include "renderer/passes/pyramid/pyramid.h"
-#include "renderer/passes/redraw/redraw.h"
 #include "renderer/passes/reproject/reproject.h"
-#include "renderer/passes/shade/shade.h"
-#include "renderer/passes/tonemap/tonemap.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { EPSILON, FOVEA_DEG, PERIPHERY_DEG, HOLE_DECAY, DYNAMIC_DECAY };
+enum { EPSILON, FOVEA_DEG, PERIPHERY_DEG, HOLE_DECAY, DYNAMIC_DECAY, DYNAMIC_OBJECTS, SPLAT };
+enum { OBJECTS_FOVEATED, OBJECTS_REGULAR };
+enum { SPLAT_ATOMIC, SPLAT_POINTS };
+
+static const char *const object_words[] = {"foveated", "regular", NULL};
+static const char *const splat_words[] = {"atomic", "points", NULL};
 
 static const struct mode_parameter parameters[] = {
     [EPSILON] = {"epsilon", "", "confidence under which a pixel is drawn anew; 1 draws everything, 0 nothing",
@@ -39,18 +47,25 @@ static const struct mode_parameter parameters[] = {
                        30, NULL},
     [HOLE_DECAY] = {"hole_decay", "", "trust lost per pyramid level of a filled hole (A)", 0, 1, 0.6, NULL},
     [DYNAMIC_DECAY] = {"dynamic_decay", "", "trust lost per frame on moving objects (D)", 0, 1, 0.75, NULL},
+    [DYNAMIC_OBJECTS] =
+        {"dynamic_objects", "",
+         "foveated: reprojected like the rest; regular: drawn everywhere in every frame (the mixed mode)", 0, 1,
+         OBJECTS_FOVEATED, object_words},
+    [SPLAT] = {"splat", "",
+               "how points find their pixels: 64-bit atomics, or drawn as points (the paper); same picture", 0,
+               1, SPLAT_ATOMIC, splat_words},
 };
 
 struct mode_state {
     struct gpu *gpu;
     float epsilon, fovea_deg;
-    struct cull cull;
-    struct gbuffer gbuffer;
-    struct shade shade;
-    struct tonemap tonemap;
+    bool has_movers, objects_regular;
+    bool marks; // moving boxes are redrawn in turn
+    struct deferred deferred;
     struct reproject reproject;
     struct pyramid pyramid;
     struct redraw redraw;
+    struct movers movers;
     struct compose compose;
     // two histories, written in turn: unfiltered tone-mapped colours and exact positions (reproject.h)
     struct gpu_image colour[2], position[2];
@@ -83,13 +98,11 @@ static void destroy(struct mode_state *s)
     if (!s)
         return;
     compose_finish(&s->compose);
+    movers_finish(&s->movers);
+    deferred_finish(&s->deferred);
     redraw_finish(&s->redraw);
     pyramid_finish(&s->pyramid);
     reproject_finish(&s->reproject);
-    tonemap_finish(&s->tonemap);
-    shade_finish(&s->shade);
-    gbuffer_finish(&s->gbuffer);
-    cull_finish(&s->cull);
     for (int i = 0; i < 2; i++) {
         gpu_image_destroy(s->gpu, &s->colour[i]);
         gpu_image_destroy(s->gpu, &s->position[i]);
@@ -126,52 +139,19 @@ static bool create_images(struct mode_state *s, const struct mode_setup *setup)
 
 static bool create_drawing(struct mode_state *s, const struct mode_setup *setup)
 {
-    const struct gbuffer_desc gbuffer = {.gpu = s->gpu,
-                                         .scene = setup->scene,
-                                         .frame = setup->frame,
-                                         .width = setup->width,
-                                         .height = setup->height,
-                                         .ids = setup->scene->scene->moving_count > 0,
-                                         .redraw_map = s->redraw_map.view};
     const struct redraw_desc redraw = {.gpu = s->gpu,
                                        .counters = setup->counters,
                                        .width = setup->width,
                                        .height = setup->height,
                                        .redraw_map = s->redraw_map.view};
-    if (!redraw_init(&s->redraw, &redraw))
-        return false;
-    const struct cull_desc cull = {.gpu = s->gpu,
-                                   .scene = setup->scene,
-                                   .frame = setup->frame,
-                                   .counters = setup->counters,
-                                   .pyramid = &s->redraw.pyramid,
-                                   .tiles_x = s->redraw.tiles_x,
-                                   .tiles_y = s->redraw.tiles_y,
-                                   .levels = s->redraw.levels};
-    if (!cull_init(&s->cull, &cull) || !gbuffer_init(&s->gbuffer, &gbuffer))
-        return false;
-    const struct shade_desc shade = {.gpu = s->gpu,
-                                     .frame = setup->frame,
-                                     .lights = &setup->scene->lights,
-                                     .shadow_map = setup->shadow_map,
-                                     .width = setup->width,
-                                     .height = setup->height,
-                                     .base = s->gbuffer.base.view,
-                                     .normal = s->gbuffer.normal.view,
-                                     .surface = s->gbuffer.surface.view,
-                                     .depth = s->gbuffer.depth.view,
-                                     .emissive = s->gbuffer.emissive.view,
-                                     .redraw_map = s->redraw_map.view};
-    if (!shade_init(&s->shade, &shade))
-        return false;
-    const struct tonemap_desc tonemap = {.gpu = s->gpu,
-                                         .frame = setup->frame,
-                                         .width = setup->width,
-                                         .height = setup->height,
-                                         .hdr = s->shade.hdr.view,
-                                         .targets = {s->colour[0].view, s->colour[1].view},
-                                         .redraw_map = s->redraw_map.view};
-    return tonemap_init(&s->tonemap, &tonemap);
+    const struct deferred_desc deferred = {.setup = setup,
+                                           .colour = {&s->colour[0], &s->colour[1]},
+                                           .ids = true,
+                                           .redraw_map = &s->redraw_map,
+                                           .position = {&s->position[0], &s->position[1]},
+                                           .redraw = &s->redraw,
+                                           .moving_everywhere = s->has_movers && s->objects_regular};
+    return redraw_init(&s->redraw, &redraw) && deferred_init(&s->deferred, &deferred);
 }
 
 static bool create_warping(struct mode_state *s, const struct mode_setup *setup)
@@ -181,6 +161,7 @@ static bool create_warping(struct mode_state *s, const struct mode_setup *setup)
                                              .motions = &setup->scene->motions,
                                              .width = setup->width,
                                              .height = setup->height,
+                                             .points = setup->values[SPLAT] == SPLAT_POINTS,
                                              .colour = {s->colour[0].view, s->colour[1].view},
                                              .position = {s->position[0].view, s->position[1].view}};
     const struct pyramid_desc pyramid = {.gpu = s->gpu,
@@ -190,43 +171,54 @@ static bool create_warping(struct mode_state *s, const struct mode_setup *setup)
                                          .colour = {s->colour[0].view, s->colour[1].view},
                                          .position = {s->position[0].view, s->position[1].view},
                                          .redraw_map = s->redraw_map.view,
+                                         .moving = s->marks,
                                          .confidence = {.epsilon = s->epsilon,
                                                         .fovea_deg = s->fovea_deg,
                                                         .periphery_deg = (float)setup->values[PERIPHERY_DEG],
                                                         .hole_decay = (float)setup->values[HOLE_DECAY],
                                                         .dynamic_decay = (float)setup->values[DYNAMIC_DECAY]}};
+    return reproject_init(&s->reproject, &reproject) && pyramid_init(&s->pyramid, &pyramid);
+}
+
+static bool create_joining(struct mode_state *s, const struct mode_setup *setup)
+{
+    const struct movers_desc movers = {.gpu = s->gpu,
+                                       .scene = setup->scene,
+                                       .frame = setup->frame,
+                                       .width = setup->width,
+                                       .height = setup->height,
+                                       .redraw_map = &s->redraw_map,
+                                       .position = {s->position[0].view, s->position[1].view},
+                                       .depth = s->deferred.gbuffer.depth.view,
+                                       .join = s->objects_regular};
     const struct compose_desc compose = {.gpu = s->gpu,
                                          .frame = setup->frame,
                                          .width = setup->width,
                                          .height = setup->height,
-                                         .depth = s->gbuffer.depth.view,
-                                         .id = s->gbuffer.id.view,
+                                         .depth = s->deferred.gbuffer.depth.view,
+                                         .id = s->deferred.gbuffer.id.view,
                                          .redraw_map = s->redraw_map.view,
-                                         .position = {s->position[0].view, s->position[1].view}};
-    return reproject_init(&s->reproject, &reproject) && pyramid_init(&s->pyramid, &pyramid) &&
-           compose_init(&s->compose, &compose);
+                                         .position = {s->position[0].view, s->position[1].view},
+                                         .tiles = &s->redraw.tiles};
+    return (!s->has_movers || movers_init(&s->movers, &movers)) && compose_init(&s->compose, &compose);
 }
 
 static void explain(const struct mode_state *s, const struct mode_setup *setup)
 {
     struct mode_explanation *e = setup->explanation;
-    const uint32_t moving = setup->scene->scene->moving_count;
-    mode_explain(e, cull_memory(&s->cull), "indirect draws of %u submodels for two eyes",
-                 setup->scene->item_count);
-    mode_explain(e, gbuffer_memory(&s->gbuffer), "G-buffer, %u pipelines%s%s", s->gbuffer.pipeline_count,
-                 s->gbuffer.has_emissive ? ", emissive because the scene glows"
-                                         : "; no emissive, nothing glows",
-                 moving ? ", ids because objects move" : "; no ids, nothing moves");
-    mode_explain(e, s->shade.hdr.bytes, "shaded colour, linear HDR, %u local lights",
-                 setup->scene->scene->light_count);
-    mode_explain(e, s->colour[0].bytes + s->colour[1].bytes, "tone-mapped colour of this and the last frame");
+    deferred_explain(&s->deferred, setup);
     mode_explain(e, s->position[0].bytes + s->position[1].bytes,
                  "world positions of this and the last frame, 128 bit");
-    mode_explain(e, reproject_memory(&s->reproject), "reprojection keys, 64 bit");
+    mode_explain(e, reproject_memory(&s->reproject),
+                 s->reproject.points ? "drawn points: source and depth" : "reprojection keys, 64 bit");
     mode_explain(e, pyramid_memory(&s->pyramid), "pull-push pyramid, %u levels because A^m < epsilon beyond",
                  s->pyramid.confidence.levels);
     mode_explain(e, s->redraw_map.bytes + redraw_memory(&s->redraw),
                  "redraw map, its or-pyramid and list of tiles");
+    if (s->has_movers)
+        mode_explain(e, s->movers.items.size, "list of %u moving submodels, %s", s->movers.item_count,
+                     s->objects_regular ? "drawn everywhere in every frame"
+                                        : "whose boxes are redrawn in turn");
 }
 
 static struct mode_state *create(const struct mode_setup *setup)
@@ -237,7 +229,11 @@ static struct mode_state *create(const struct mode_setup *setup)
     s->gpu = setup->gpu;
     s->epsilon = (float)setup->values[EPSILON];
     s->fovea_deg = (float)setup->values[FOVEA_DEG];
-    if (!create_images(s, setup) || !create_drawing(s, setup) || !create_warping(s, setup)) {
+    s->has_movers = setup->scene->moving_object_count > 0;
+    s->marks = s->has_movers && s->epsilon > 0;
+    s->objects_regular = setup->values[DYNAMIC_OBJECTS] == OBJECTS_REGULAR;
+    if (!create_images(s, setup) || !create_drawing(s, setup) || !create_warping(s, setup) ||
+        !create_joining(s, setup)) {
         destroy(s);
         return NULL;
     }
@@ -257,17 +253,39 @@ static void mark_all(struct mode_state *s, struct gpu_frame *f)
     gpu_timer_end(f);
 }
 
-static void warp(struct mode_state *s, struct gpu_frame *f, uint32_t target)
+static void warp(struct mode_state *s, struct gpu_frame *f, uint32_t target, uint32_t turn, bool mixed)
 {
     // epsilon 0 redraws nothing, so the fovea must come from the last frame too
     reproject_record(&s->reproject, gpu_timer_begin(f, "reproject"), s->last, s->epsilon > 0 ? s->fovea_deg : 0,
-                     false);
+                     mixed);
     gpu_timer_end(f);
+    if (s->marks) {
+        movers_mark(&s->movers, gpu_timer_begin(f, "mark moving boxes"), &s->redraw_map, turn);
+        gpu_timer_end(f);
+    }
     pyramid_pull(&s->pyramid, gpu_timer_begin(f, "pull"), target);
     gpu_timer_end(f);
     VkCommandBuffer cmd = gpu_timer_begin(f, "fill and confidence");
-    pyramid_fill(&s->pyramid, cmd, target);
+    pyramid_fill(&s->pyramid, cmd, target, turn);
     gpu_barrier(cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
+    gpu_timer_end(f);
+}
+
+// The G-buffer of what is redrawn; the redraw map is complete afterwards, and its tiles are listed.
+static void draw(struct mode_state *s, struct gpu_frame *f, uint32_t target, bool warped, bool mixed)
+{
+    redraw_record(&s->redraw, gpu_timer_begin(f, "redraw tiles"), !mixed);
+    gpu_timer_end(f);
+    deferred_geometry(&s->deferred, f,
+                      mixed    ? GBUFFER_MOVING_EVERYWHERE
+                      : warped ? GBUFFER_MASKED
+                               : GBUFFER_ALL,
+                      target);
+    if (!mixed)
+        return;
+    VkCommandBuffer cmd = gpu_timer_begin(f, "join moving pixels");
+    movers_join(&s->movers, cmd, target);
+    redraw_record(&s->redraw, cmd, true);
     gpu_timer_end(f);
 }
 
@@ -276,6 +294,7 @@ static bool record(struct mode_state *s, const struct mode_record *record)
     struct gpu_frame *f = record->gpu_frame;
     const uint32_t target = 1 - s->last;
     const bool warped = record->history && s->in_use && s->epsilon < 1;
+    const bool mixed = warped && record->moving && s->has_movers && s->objects_regular;
     if (!s->in_use) {
         const struct gpu_image *images[] = {&s->colour[0], &s->colour[1], &s->position[0], &s->position[1],
                                             &s->redraw_map};
@@ -283,27 +302,19 @@ static bool record(struct mode_state *s, const struct mode_record *record)
             gpu_image_layout(f->cmd, images[i], VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
     }
     if (warped)
-        warp(s, f, target);
+        warp(s, f, target, (uint32_t)record->number, mixed);
     else
         mark_all(s, f);
-    redraw_record(&s->redraw, gpu_timer_begin(f, "redraw tiles"), true);
+    draw(s, f, target, warped, mixed);
+    compose_record_tiles(&s->compose, gpu_timer_begin(f, "compose"), target);
     gpu_timer_end(f);
-    cull_record(&s->cull, gpu_timer_begin(f, "cull"), false);
-    gpu_timer_end(f);
-    gbuffer_record(&s->gbuffer, gpu_timer_begin(f, "g-buffer"), &s->cull.draws, &s->cull.draw_counts, warped);
-    gpu_timer_end(f);
-    shade_record(&s->shade, gpu_timer_begin(f, "shade"));
-    gpu_timer_end(f);
-    VkCommandBuffer cmd = gpu_timer_begin(f, "tone map");
-    gpu_barrier(cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
-    tonemap_record(&s->tonemap, cmd, target);
-    gpu_timer_end(f);
-    compose_record(&s->compose, gpu_timer_begin(f, "compose"), target);
-    gpu_timer_end(f);
+    deferred_occlusion(&s->deferred, f, target);
+    deferred_shade(&s->deferred, f, target);
     s->last = target;
     s->in_use = true;
-    *record->result =
-        (struct mode_result){.colour = &s->colour[target], .redraw_map = &s->redraw_map, .counts_shaded = true};
+    *record->result = (struct mode_result){.colour = deferred_show(&s->deferred, f, target, record->history),
+                                           .redraw_map = &s->redraw_map,
+                                           .counts_shaded = true};
     return true;
 }
 

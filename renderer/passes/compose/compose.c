@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-enum { ID = 4, BINDINGS };
+enum { ID = 4, TILES, BINDINGS };
 
 static const struct gpu_binding all_bindings[BINDINGS] = {
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},         // frame
@@ -15,18 +15,22 @@ static const struct gpu_binding all_bindings[BINDINGS] = {
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},          // redraw map
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},          // position
     {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, // id, where something moves
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},         // tiles
 };
 
 bool compose_init(struct compose *c, const struct compose_desc *desc)
 {
-    *c = (struct compose){.gpu = desc->gpu, .width = desc->width, .height = desc->height};
+    *c = (struct compose){.gpu = desc->gpu, .width = desc->width, .height = desc->height, .tiles = desc->tiles};
     struct gpu_binding bindings[BINDINGS];
     memcpy(bindings, all_bindings, sizeof bindings);
     bindings[ID].absent = !desc->id;
     const struct gpu_code code = desc->id ? (struct gpu_code){compose_comp_id, sizeof compose_comp_id}
                                           : (struct gpu_code){compose_comp, sizeof compose_comp};
-    const struct gpu_kernel_desc kernel = {
-        .name = "compose", .code = code, .bindings = bindings, .binding_count = countof(bindings)};
+    const struct gpu_kernel_desc kernel = {.name = "compose",
+                                           .code = code,
+                                           .bindings = bindings,
+                                           .binding_count = countof(bindings),
+                                           .push_bytes = sizeof(uint32_t)};
     c->sampler = gpu_sampler_create_plain(c->gpu);
     if (!c->sampler || !gpu_kernel_create(c->gpu, &kernel, &c->kernel))
         return false;
@@ -37,6 +41,7 @@ bool compose_init(struct compose *c, const struct compose_desc *desc)
             {.view = desc->redraw_map},
             {.view = desc->position[target]},
             {.view = desc->id, .sampler = c->sampler, .layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL},
+            {.buffer = desc->tiles ? desc->tiles : desc->frame}, // never read without a list
         };
         c->sets[target] = gpu_set_create(c->gpu, c->kernel.set_layout, bindings, resources, countof(bindings));
         if (!c->sets[target])
@@ -58,6 +63,13 @@ void compose_finish(struct compose *c)
 
 void compose_record(const struct compose *c, VkCommandBuffer cmd, uint32_t target)
 {
-    gpu_dispatch(cmd, &c->kernel, c->sets[target], NULL, 0, (c->width + SHARED_TILE - 1) / SHARED_TILE,
-                 (c->height + SHARED_TILE - 1) / SHARED_TILE, 2);
+    const uint32_t listed = 0;
+    gpu_dispatch(cmd, &c->kernel, c->sets[target], &listed, sizeof listed,
+                 (c->width + SHARED_TILE - 1) / SHARED_TILE, (c->height + SHARED_TILE - 1) / SHARED_TILE, 2);
+}
+
+void compose_record_tiles(const struct compose *c, VkCommandBuffer cmd, uint32_t target)
+{
+    const uint32_t listed = 1;
+    gpu_dispatch_indirect(cmd, &c->kernel, c->sets[target], &listed, sizeof listed, c->tiles);
 }

@@ -2,6 +2,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 #include "renderer/shared/shared.h"
+#include "renderer/shared/tiles.glsl"
 #include "renderer/shared/view.glsl"
 
 layout(local_size_x = SHARED_TILE, local_size_y = SHARED_TILE) in;
@@ -13,13 +14,21 @@ layout(binding = 3, rgba32f) uniform writeonly image2DArray position_image;
 #ifdef ID
 layout(binding = 4) uniform usampler2DArray id_image;
 #endif
+layout(scalar, binding = 5) readonly buffer Tiles { uint tiles[]; };
+layout(push_constant) uniform Push { uint listed; } push;
 
 void main()
 {
     ivec3 pixel = ivec3(gl_GlobalInvocationID);
+    if (push.listed != 0u) {
+        uint index = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+        if (index >= tiles[SHARED_TILES_FIRST - 1])
+            return;
+        pixel = tile_pixel(tiles[SHARED_TILES_FIRST + index], gl_LocalInvocationID.xy);
+    }
     if (pixel.x >= int(frame.width) || pixel.y >= int(frame.height) || imageLoad(redraw_map, pixel).x == 0u)
         return;
-    vec3 ray = view_ray(frame.eyes[pixel.z], vec2(frame.width, frame.height), vec2(pixel.xy) + 0.5);
+    vec3 ray = view_ray(frame.eyes[pixel.z], vec2(frame.width, frame.height), vec2(pixel.xy) + 0.5 - frame.jitter);
     mat4 world_from_eye = frame.eyes[pixel.z].world_from_eye;
     vec3 direction = mat3(world_from_eye) * ray;
     float depth = texelFetch(depth_image, pixel, 0).x;

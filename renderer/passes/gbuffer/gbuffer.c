@@ -6,6 +6,7 @@
 #include "gbuffer.frag_id.h"
 #include "gbuffer.vert.h"
 #include "mask.frag.h"
+#include "mask.frag_kept.h"
 #include "mask.vert.h"
 
 #include <stddef.h>
@@ -144,15 +145,33 @@ static bool create_pipelines(struct gbuffer *g)
     return true;
 }
 
-static bool create_mask(struct gbuffer *g, VkImageView redraw_map)
+static VkPipeline create_triangle(struct gbuffer *g, const char *name, struct gpu_code fragment)
 {
-    const struct gpu_binding binding = {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
-                                        .stages = VK_SHADER_STAGE_FRAGMENT_BIT};
-    g->mask_set_layout = gpu_set_layout_create(g->gpu, &binding, 1);
+    return gpu_raster_create(g->gpu, &(struct gpu_raster_desc){.name = name,
+                                                               .vertex = {mask_vert, sizeof mask_vert},
+                                                               .fragment = fragment,
+                                                               .layout = g->mask_layout,
+                                                               .depth_format = VK_FORMAT_D32_SFLOAT,
+                                                               .depth_compare = VK_COMPARE_OP_ALWAYS});
+}
+
+static bool create_mask(struct gbuffer *g, const struct gbuffer_desc *desc)
+{
+    const bool keeps = desc->position[0];
+    const struct gpu_binding bindings[] = {
+        {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, .stages = VK_SHADER_STAGE_FRAGMENT_BIT},
+        {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, .stages = VK_SHADER_STAGE_FRAGMENT_BIT},
+        {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, .stages = VK_SHADER_STAGE_FRAGMENT_BIT, .absent = !keeps}};
+    g->mask_set_layout = gpu_set_layout_create(g->gpu, bindings, countof(bindings));
     if (!g->mask_set_layout)
         return false;
-    g->mask_set =
-        gpu_set_create(g->gpu, g->mask_set_layout, &binding, &(struct gpu_resource){.view = redraw_map}, 1);
+    for (int i = 0; i < 2; i++) {
+        const struct gpu_resource resources[] = {
+            {.view = desc->redraw_map}, {.buffer = desc->frame}, {.view = desc->position[i]}};
+        g->mask_sets[i] = gpu_set_create(g->gpu, g->mask_set_layout, bindings, resources, countof(resources));
+        if (!g->mask_sets[i])
+            return false;
+    }
     const VkPipelineLayoutCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
         .setLayoutCount = 1,
@@ -160,15 +179,12 @@ static bool create_mask(struct gbuffer *g, VkImageView redraw_map)
         .pushConstantRangeCount = 1,
         .pPushConstantRanges = &(VkPushConstantRange){VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(uint32_t)},
     };
-    if (!g->mask_set || !VK(g->gpu, vkCreatePipelineLayout(g->gpu->device, &info, NULL, &g->mask_layout)))
+    if (!VK(g->gpu, vkCreatePipelineLayout(g->gpu->device, &info, NULL, &g->mask_layout)))
         return false;
-    g->mask = gpu_raster_create(g->gpu, &(struct gpu_raster_desc){.name = "redraw mask",
-                                                                  .vertex = {mask_vert, sizeof mask_vert},
-                                                                  .fragment = {mask_frag, sizeof mask_frag},
-                                                                  .layout = g->mask_layout,
-                                                                  .depth_format = VK_FORMAT_D32_SFLOAT,
-                                                                  .depth_compare = VK_COMPARE_OP_ALWAYS});
-    return g->mask;
+    g->mask = create_triangle(g, "redraw mask", (struct gpu_code){mask_frag, sizeof mask_frag});
+    if (keeps)
+        g->kept = create_triangle(g, "kept depths", (struct gpu_code){mask_frag_kept, sizeof mask_frag_kept});
+    return g->mask && (!keeps || g->kept);
 }
 
 bool gbuffer_init(struct gbuffer *g, const struct gbuffer_desc *desc)
@@ -180,7 +196,7 @@ bool gbuffer_init(struct gbuffer *g, const struct gbuffer_desc *desc)
                           .has_emissive = (desc->scene->features & SCENE_GPU_EMISSIVE) != 0,
                           .has_id = desc->ids};
     return create_targets(g) && create_layouts(g, desc->frame) && create_pipelines(g) &&
-           (!desc->redraw_map || create_mask(g, desc->redraw_map));
+           (!desc->redraw_map || create_mask(g, desc));
 }
 
 void gbuffer_finish(struct gbuffer *g)
@@ -189,8 +205,10 @@ void gbuffer_finish(struct gbuffer *g)
         return;
     VkDevice device = g->gpu->device;
     vkDestroyPipeline(device, g->mask, NULL);
+    vkDestroyPipeline(device, g->kept, NULL);
     vkDestroyPipelineLayout(device, g->mask_layout, NULL);
-    gpu_set_free(g->gpu, g->mask_set);
+    gpu_set_free(g->gpu, g->mask_sets[0]);
+    gpu_set_free(g->gpu, g->mask_sets[1]);
     vkDestroyDescriptorSetLayout(device, g->mask_set_layout, NULL);
     for (uint32_t i = 0; i < g->pipeline_count; i++)
         vkDestroyPipeline(device, g->pipelines[i].pipeline, NULL);
@@ -209,10 +227,19 @@ uint64_t gbuffer_memory(const struct gbuffer *g)
            g->depth.bytes;
 }
 
-static void draw_mask(const struct gbuffer *g, VkCommandBuffer cmd, uint32_t eye)
+// What may be drawn: one rendering of an eye. The first clears depth, the others go on.
+struct part {
+    VkPipeline before;     // a triangle drawn before it, null: none
+    bool statics, movings; // which buckets
+    bool first;
+};
+
+static void draw_triangle(const struct gbuffer *g, VkCommandBuffer cmd, VkPipeline pipeline, uint32_t eye,
+                          uint32_t source)
 {
-    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, g->mask);
-    vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, g->mask_layout, 0, 1, &g->mask_set, 0, NULL);
+    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
+    vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, g->mask_layout, 0, 1, &g->mask_sets[source],
+                            0, NULL);
     vkCmdPushConstants(cmd, g->mask_layout, VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof eye, &eye);
     vkCmdSetCullMode(cmd, VK_CULL_MODE_NONE);
     vkCmdSetFrontFace(cmd, VK_FRONT_FACE_COUNTER_CLOCKWISE);
@@ -228,7 +255,7 @@ static VkPipeline pipeline_for(const struct gbuffer *g, uint32_t features)
 }
 
 static void draw_buckets(const struct gbuffer *g, VkCommandBuffer cmd, const struct gpu_buffer *draws,
-                         const struct gpu_buffer *draw_counts, uint32_t eye)
+                         const struct gpu_buffer *draw_counts, uint32_t eye, const struct part *part)
 {
     const struct scene_gpu *s = g->scene;
     vkCmdBindVertexBuffers(cmd, 0, 1, &s->vertices.buffer, &(VkDeviceSize){0});
@@ -237,6 +264,8 @@ static void draw_buckets(const struct gbuffer *g, VkCommandBuffer cmd, const str
     vkCmdPushConstants(cmd, g->layout, VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof eye, &eye);
     for (uint32_t b = 0; b < s->bucket_count; b++) {
         const struct scene_bucket *bucket = &s->buckets[b];
+        if (!(bucket->moving ? part->movings : part->statics))
+            continue;
         vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_for(g, bucket->features));
         vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, g->layout, 1, 1,
                                 &s->material_sets[bucket->material], 0, NULL);
@@ -250,8 +279,57 @@ static void draw_buckets(const struct gbuffer *g, VkCommandBuffer cmd, const str
     }
 }
 
+static void draw_part(const struct gbuffer *g, VkCommandBuffer cmd, const struct gpu_buffer *draws,
+                      const struct gpu_buffer *draw_counts, uint32_t eye, uint32_t source,
+                      const struct part *part)
+{
+    const struct gpu_image *images[TARGETS];
+    VkRenderingAttachmentInfo colours[TARGETS];
+    targets(g, images);
+    for (uint32_t i = 0; i < TARGETS; i++)
+        colours[i] =
+            (VkRenderingAttachmentInfo){.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
+                                        .imageView = images[i] ? images[i]->layer_views[eye] : VK_NULL_HANDLE,
+                                        .imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                                        // the id of the background is 0; the rest is read only under depth
+                                        .loadOp = !part->first ? VK_ATTACHMENT_LOAD_OP_LOAD
+                                                  : i == 4     ? VK_ATTACHMENT_LOAD_OP_CLEAR
+                                                               : VK_ATTACHMENT_LOAD_OP_DONT_CARE,
+                                        .storeOp = VK_ATTACHMENT_STORE_OP_STORE};
+    VkRenderingAttachmentInfo depth = {.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
+                                       .imageView = g->depth.layer_views[eye],
+                                       .imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
+                                       .loadOp = part->first ? VK_ATTACHMENT_LOAD_OP_CLEAR
+                                                             : VK_ATTACHMENT_LOAD_OP_LOAD,
+                                       .storeOp = VK_ATTACHMENT_STORE_OP_STORE};
+    const VkRect2D area = {.extent = {g->width, g->height}};
+    VkRenderingInfo info = {.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
+                            .renderArea = area,
+                            .layerCount = 1,
+                            .pDepthAttachment = &depth};
+    const VkPipelineStageFlags2 tests =
+        VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
+    vkCmdSetViewport(cmd, 0, 1, &(VkViewport){0, 0, (float)g->width, (float)g->height, 0, 1});
+    vkCmdSetScissor(cmd, 0, 1, &area);
+    if (!part->first)
+        gpu_barrier(cmd, tests | VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                    tests | VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT);
+    if (part->before) {
+        vkCmdBeginRendering(cmd, &info);
+        draw_triangle(g, cmd, part->before, eye, source);
+        vkCmdEndRendering(cmd);
+        gpu_barrier(cmd, tests, tests);
+        depth.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
+    }
+    info.colorAttachmentCount = TARGETS;
+    info.pColorAttachments = colours;
+    vkCmdBeginRendering(cmd, &info);
+    draw_buckets(g, cmd, draws, draw_counts, eye, part);
+    vkCmdEndRendering(cmd);
+}
+
 void gbuffer_record(const struct gbuffer *g, VkCommandBuffer cmd, const struct gpu_buffer *draws,
-                    const struct gpu_buffer *draw_counts, bool masked)
+                    const struct gpu_buffer *draw_counts, enum gbuffer_extent extent, uint32_t source)
 {
     const struct gpu_image *images[TARGETS];
     targets(g, images);
@@ -261,43 +339,13 @@ void gbuffer_record(const struct gbuffer *g, VkCommandBuffer cmd, const struct g
                              VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
     }
     gpu_image_layout(cmd, &g->depth, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
+    const bool apart = extent == GBUFFER_MOVING_EVERYWHERE;
+    const struct part drawn = {extent == GBUFFER_ALL ? VK_NULL_HANDLE : g->mask, true, !apart, true};
+    const struct part moving = {g->kept, false, true, false};
     for (uint32_t eye = 0; eye < 2; eye++) {
-        VkRenderingAttachmentInfo colours[TARGETS];
-        for (uint32_t i = 0; i < TARGETS; i++)
-            colours[i] = (VkRenderingAttachmentInfo){
-                .sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
-                .imageView = images[i] ? images[i]->layer_views[eye] : VK_NULL_HANDLE,
-                .imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-                // the id of the background is 0; the rest is read only under depth
-                .loadOp = i == 4 ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_DONT_CARE,
-                .storeOp = VK_ATTACHMENT_STORE_OP_STORE};
-        const VkRenderingAttachmentInfo depth = {.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
-                                                 .imageView = g->depth.layer_views[eye],
-                                                 .imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
-                                                 .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
-                                                 .storeOp = VK_ATTACHMENT_STORE_OP_STORE};
-        const VkRect2D area = {.extent = {g->width, g->height}};
-        VkRenderingInfo info = {.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
-                                .renderArea = area,
-                                .layerCount = 1,
-                                .pDepthAttachment = &depth};
-        vkCmdSetViewport(cmd, 0, 1, &(VkViewport){0, 0, (float)g->width, (float)g->height, 0, 1});
-        vkCmdSetScissor(cmd, 0, 1, &area);
-        VkRenderingAttachmentInfo kept = depth;
-        if (masked) {
-            vkCmdBeginRendering(cmd, &info);
-            draw_mask(g, cmd, eye);
-            vkCmdEndRendering(cmd);
-            gpu_barrier(cmd, VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
-                        VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT);
-            kept.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
-        }
-        info.pDepthAttachment = &kept;
-        info.colorAttachmentCount = TARGETS;
-        info.pColorAttachments = colours;
-        vkCmdBeginRendering(cmd, &info);
-        draw_buckets(g, cmd, draws, draw_counts, eye);
-        vkCmdEndRendering(cmd);
+        draw_part(g, cmd, draws, draw_counts, eye, source, &drawn);
+        if (apart)
+            draw_part(g, cmd, draws, draw_counts, eye, source, &moving);
     }
     for (uint32_t i = 0; i < TARGETS; i++) {
         if (images[i])

@@ -1,7 +1,7 @@
 // Draws the scene's surfaces: what a later pass needs to shade each pixel.
 //
-// Reversed depth, GREATER: 0 is infinity. With `kept` set, pixels whose depth was written before (gbuffer_mask)
-// stay untouched: nearer than anything, they reject every fragment before it is shaded.
+// Reversed depth, GREATER: 0 is infinity. With a redraw map, kept pixels get depth 1 first: nearer than
+// anything, they reject every fragment before it is shaded.
 #ifndef RENDERER_PASSES_GBUFFER_GBUFFER_H
 #define RENDERER_PASSES_GBUFFER_GBUFFER_H
 
@@ -31,9 +31,10 @@ struct gbuffer {
     } pipelines[GBUFFER_PIPELINES];
     // the mask: a full-screen triangle that writes depth 1 where the redraw map is 0
     VkDescriptorSetLayout mask_set_layout;
-    VkDescriptorSet mask_set;
+    VkDescriptorSet mask_sets[2];
     VkPipelineLayout mask_layout;
     VkPipeline mask;
+    VkPipeline kept; // the same triangle, but it writes the kept pixels' own depths
 };
 
 struct gbuffer_desc {
@@ -41,17 +42,24 @@ struct gbuffer_desc {
     const struct scene_gpu *scene;
     const struct gpu_buffer *frame;
     uint32_t width, height;
-    bool ids;               // keep moving ids, for modes with history
-    VkImageView redraw_map; // r8 uint, layout GENERAL, two layers; null: every pixel is drawn
+    bool ids;                // keep moving ids, for modes with history
+    VkImageView redraw_map;  // r8 uint, layout GENERAL, two layers; null: every pixel is drawn
+    VkImageView position[2]; // rgba32f, GENERAL: of the kept pixels, for GBUFFER_MOVING_EVERYWHERE; else null
+};
+
+enum gbuffer_extent {
+    GBUFFER_ALL,               // every pixel
+    GBUFFER_MASKED,            // pixels whose redraw map is not 0
+    GBUFFER_MOVING_EVERYWHERE, // those, and moving objects wherever they are nearer than what is kept
 };
 
 bool gbuffer_init(struct gbuffer *gbuffer, const struct gbuffer_desc *desc);
 void gbuffer_finish(struct gbuffer *gbuffer);
 uint64_t gbuffer_memory(const struct gbuffer *gbuffer);
 
-// Draws both eyes from the culled draws. `masked`: only pixels whose redraw map is not 0. Leaves all targets
-// readable by compute (SHADER_READ_ONLY_OPTIMAL, depth DEPTH_READ_ONLY_OPTIMAL).
+// Draws both eyes from the culled draws. Leaves all targets readable by compute (SHADER_READ_ONLY_OPTIMAL,
+// depth DEPTH_READ_ONLY_OPTIMAL). source: which positions hold what is kept.
 void gbuffer_record(const struct gbuffer *gbuffer, VkCommandBuffer cmd, const struct gpu_buffer *draws,
-                    const struct gpu_buffer *draw_counts, bool masked);
+                    const struct gpu_buffer *draw_counts, enum gbuffer_extent extent, uint32_t source);
 
 #endif

@@ -4,7 +4,8 @@
 #include "renderer/shared/shared.h"
 #include "renderer/shared/view.glsl"
 
-// FORCED: pixels that the map already holds are redrawn, whatever their confidence.
+// MOVING: the scene has moving objects. Pixels that the map already holds are redrawn, whatever their confidence, and
+// those of moving objects in turns of whole tiles.
 
 layout(local_size_x = SHARED_TILE, local_size_y = SHARED_TILE) in;
 
@@ -16,8 +17,34 @@ layout(binding = 4) uniform sampler2DArray depths;
 layout(binding = 5, r8ui) uniform uimage2DArray redraw_map;
 layout(push_constant) uniform Push {
     float epsilon, fovea_deg, periphery_deg, hole_decay, dynamic_decay;
-    uint levels;
+    uint levels, turn;
 } push;
+
+float eccentricity_confidence(ivec3 pixel, vec2 place)
+{
+    const shared_eye eye = frame.eyes[pixel.z];
+    float ecc = view_eccentricity_deg(eye, view_ray(eye, vec2(frame.width, frame.height), place));
+    // c_e = S_1((phi - phi_F) / (phi_0 - phi_F)), section 5.2
+    return smoothstep(push.fovea_deg, max(push.periphery_deg, push.fovea_deg + 1e-3), ecc);
+}
+
+#ifdef MOVING
+// Whether it is the turn of the pixel's tile. c_e D^t falls under epsilon after P frames; a tile redraws its moving
+// pixels every P frames, each tile in its own, so that neither one frame has all the work nor many tiles a few pixels.
+bool tiles_turn(ivec3 pixel)
+{
+    if (push.dynamic_decay <= 0.0 || push.dynamic_decay >= 1.0 || push.epsilon <= 0.0)
+        return false;
+    ivec2 tile = pixel.xy / SHARED_TILE;
+    float confidence = eccentricity_confidence(pixel, float(SHARED_TILE) * (vec2(tile) + 0.5));
+    if (confidence <= push.epsilon)
+        return false; // redrawn anyway
+    float period = floor(log(push.epsilon / confidence) / log(push.dynamic_decay)) + 1.0;
+    // neighbours differ: the golden ratio's multiples in both directions
+    uint phase = uint(tile.x) * 2654435769u + uint(tile.y) * 1640531527u + uint(pixel.z) * 40503u;
+    return period < 64.0 && (push.turn + (phase >> 16)) % uint(period) == 0u;
+}
+#endif
 
 // Level m around a pixel: the four nearest texels, weighted bilinearly, of those with a value and of the kind (surface
 // or background) of the texel over the pixel itself; alpha is their contrast confidence, 0 where that texel has
@@ -52,11 +79,7 @@ void main()
     ivec3 pixel = ivec3(gl_GlobalInvocationID);
     if (pixel.x >= int(frame.width) || pixel.y >= int(frame.height))
         return;
-    const shared_eye eye = frame.eyes[pixel.z];
-    vec3 ray = view_ray(eye, vec2(frame.width, frame.height), vec2(pixel.xy) + 0.5);
-    float ecc = view_eccentricity_deg(eye, ray);
-    // c_e = S_1((phi - phi_F) / (phi_0 - phi_F)), section 5.2
-    float confidence = smoothstep(push.fovea_deg, max(push.periphery_deg, push.fovea_deg + 1e-3), ecc);
+    float confidence = eccentricity_confidence(pixel, vec2(pixel.xy) + 0.5);
     float w = imageLoad(position, pixel).w, depth = 0.0;
     vec4 filled = vec4(0.0);
     if (w == 0.0) {
@@ -68,8 +91,8 @@ void main()
         confidence *= pow(push.dynamic_decay, round(fract(w) * 64.0)); // c_d(t), section 7
     }
     bool redraw = push.epsilon >= 1.0 || confidence < push.epsilon;
-#ifdef FORCED
-    redraw = redraw || imageLoad(redraw_map, pixel).x != 0u;
+#ifdef MOVING
+    redraw = redraw || imageLoad(redraw_map, pixel).x != 0u || (w >= 2.0 && tiles_turn(pixel));
 #endif
     if (!redraw && w == 0.0) {
         imageStore(colour, pixel, vec4(filled.rgb, 1.0));

@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "renderer/shared/shared.h"
 #include "renderer/shared/colour.glsl"
+#include "renderer/shared/kept.glsl"
 
 // One level of the pyramid from the one below. Franke et al. 2021, section 5.2: the alpha of a mip-mapped pixel is its
 // contrast confidence c_c = 1 - 0.5 (max L - min L) over the valid inputs, L their tone-mapped luminance in [0, 1]; 0
@@ -35,9 +36,7 @@ vec4 load(ivec3 pixel, out float depth)
     vec4 p = imageLoad(position, pixel);
     if (p.w == 0.0)
         return vec4(0.0);
-    vec4 forward = frame.eyes[pixel.z].forward;
-    if (p.w > 0.0)
-        depth = frame.near_m / max(dot(forward.xyz, p.xyz) + forward.w, frame.near_m);
+    depth = kept_depth(frame.eyes[pixel.z], p, frame.near_m);
     return vec4(imageLoad(colour, pixel).rgb, 1.0);
 #else
     depth = imageLoad(depth_in, pixel).x;

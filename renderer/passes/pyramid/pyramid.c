@@ -3,7 +3,7 @@
 #include "renderer/shared/shared.h"
 
 #include "fill.comp.h"
-#include "fill.comp_forced.h"
+#include "fill.comp_moving.h"
 #include "pull.comp.h"
 #include "pull.comp_first.h"
 
@@ -115,7 +115,7 @@ bool pyramid_init(struct pyramid *p, const struct pyramid_desc *desc)
                                    .binding_count = countof(pull_bindings)};
     const struct gpu_kernel_desc fill = {
         .name = "fill",
-        .code = desc->forced ? (struct gpu_code){fill_comp_forced, sizeof fill_comp_forced}
+        .code = desc->moving ? (struct gpu_code){fill_comp_moving, sizeof fill_comp_moving}
                              : (struct gpu_code){fill_comp, sizeof fill_comp},
         .bindings = fill_bindings,
         .binding_count = countof(fill_bindings),
@@ -170,8 +170,10 @@ void pyramid_pull(const struct pyramid *p, VkCommandBuffer cmd, uint32_t target)
     }
 }
 
-void pyramid_fill(const struct pyramid *p, VkCommandBuffer cmd, uint32_t target)
+void pyramid_fill(const struct pyramid *p, VkCommandBuffer cmd, uint32_t target, uint32_t turn)
 {
-    gpu_dispatch(cmd, &p->fill, p->fill_sets[target], &p->confidence, sizeof p->confidence,
+    struct pyramid_confidence push = p->confidence;
+    push.turn = turn;
+    gpu_dispatch(cmd, &p->fill, p->fill_sets[target], &push, sizeof push,
                  (p->width + SHARED_TILE - 1) / SHARED_TILE, (p->height + SHARED_TILE - 1) / SHARED_TILE, 2);
 }

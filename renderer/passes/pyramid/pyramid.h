@@ -17,6 +17,7 @@ struct pyramid_confidence {
     float hole_decay;               // A
     float dynamic_decay;            // D
     uint32_t levels;                // set by pyramid_init
+    uint32_t turn;                  // set by pyramid_fill
 };
 
 struct pyramid {
@@ -38,7 +39,7 @@ struct pyramid_desc {
     uint32_t width, height;
     VkImageView colour[2], position[2]; // rgba8, rgba32f
     VkImageView redraw_map;             // r8 uint, written
-    bool forced;                        // the map is read first: what it holds is redrawn
+    bool moving;                        // objects move: what the map already holds is redrawn too
     struct pyramid_confidence confidence;
 };
 
@@ -48,7 +49,8 @@ uint64_t pyramid_memory(const struct pyramid *pyramid);
 // The deepest level that can matter: beyond it A^m < epsilon, and the hole is redrawn whatever its colour.
 uint32_t pyramid_levels(uint32_t width, uint32_t height, float epsilon, float hole_decay);
 void pyramid_pull(const struct pyramid *pyramid, VkCommandBuffer cmd, uint32_t target);
-// Fills holes of colour `target` and writes the redraw map.
-void pyramid_fill(const struct pyramid *pyramid, VkCommandBuffer cmd, uint32_t target);
+// Fills holes of colour `target` and writes the redraw map. turn: counts up by one a frame; decides whose tiles
+// redraw their moving pixels (fill.comp).
+void pyramid_fill(const struct pyramid *pyramid, VkCommandBuffer cmd, uint32_t target, uint32_t turn);
 
 #endif

@@ -10,7 +10,7 @@
 // wanted pixels of the group.
 vec3 shade_pixel(ivec3 pixel, bool wanted, uvec2 corner)
 {
-    vec3 ray = view_ray(frame.eyes[pixel.z], vec2(frame.width, frame.height), vec2(pixel.xy) + 0.5);
+    vec3 ray = view_ray(frame.eyes[pixel.z], vec2(frame.width, frame.height), vec2(pixel.xy) + 0.5 - frame.jitter);
     mat4 world_from_eye = frame.eyes[pixel.z].world_from_eye;
     vec3 direction = mat3(world_from_eye) * ray;
     float depth = wanted ? texelFetch(depth_image, pixel, 0).x : 0.0;
@@ -40,7 +40,8 @@ vec3 shade_pixel(ivec3 pixel, bool wanted, uvec2 corner)
         measure_tile(lit, distance);
         for (uint first = 0u; first < frame.light_count && farthest_bits != 0u; first += light_chunk) {
             list_lights(first, uint(pixel.z), corner);
-            for (uint word = 0u; lit && word < light_words; word++) {
+            uint left = min(light_chunk, frame.light_count - first);
+            for (uint word = 0u; lit && 32u * word < left; word++) {
                 for (uint bits = light_mask[word]; bits != 0u; bits &= bits - 1u)
                     radiance += point_light(s, position, lights[first + 32u * word + uint(findLSB(bits))]);
             }

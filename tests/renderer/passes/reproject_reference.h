@@ -14,6 +14,7 @@ enum { WARP_MOTIONS = 8 };
 struct warp {
     struct rig_view view;
     double drop_deg;
+    bool drop_moving;
     float motions[WARP_MOTIONS][16]; // by moving id, column-major; 0 unused
     float (*positions)[4];           // two layers, reproject.h
 };

@@ -165,7 +165,9 @@ static void bed_open(struct bed *b, uint64_t seed)
     assert_true(rig_open(&b->rig));
     b->uploaded = scene_gpu_create(b->rig.gpu, b->scene);
     assert_non_null(b->uploaded);
-    assert_true(cull_init(&b->cull, b->rig.gpu, b->uploaded, &b->rig.frame, &b->rig.counters));
+    const struct cull_desc desc = {
+        .gpu = b->rig.gpu, .scene = b->uploaded, .frame = &b->rig.frame, .counters = &b->rig.counters};
+    assert_true(cull_init(&b->cull, &desc));
     const uint32_t count = b->uploaded->item_count;
     b->items = calloc(count, sizeof *b->items);
     b->boxes = calloc(count, sizeof *b->boxes);
@@ -225,7 +227,7 @@ static void run(struct bed *b)
     b->view.origin = b->view.last_origin = b->uploaded->origin;
     rig_frame(&b->rig, &b->view);
     scene_gpu_constants(b->uploaded, b->rig.frame.mapped);
-    cull_record(&b->cull, cmd);
+    cull_record(&b->cull, cmd, false);
     rig_end(&b->rig, cmd);
     const uint32_t count = b->uploaded->item_count;
     rig_read_words(&b->rig, &b->cull.visible, 2 * count, b->visible);

@@ -78,7 +78,7 @@ static void bed_close(struct bed *b)
 static void record(struct bed *b, uint32_t from)
 {
     VkCommandBuffer cmd = rig_begin(&b->rig);
-    reproject_record(&b->pass, cmd, from, (float)b->warp.drop_deg);
+    reproject_record(&b->pass, cmd, from, (float)b->warp.drop_deg, b->warp.drop_moving);
     rig_end(&b->rig, cmd);
 }
 

@@ -1,6 +1,6 @@
 // PNG files, written whole or not at all.
-#ifndef APP_FOVSTUDY_PNG_H
-#define APP_FOVSTUDY_PNG_H
+#ifndef APP_COMMAND_PNG_H
+#define APP_COMMAND_PNG_H
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -1,11 +1,12 @@
-// Long options of a subcommand: one table says what there is, for reading and for --help.
+// Long options of a program or a subcommand of it: one table says what there is, for reading and for --help.
 //
-// Use: struct options o; options_start(&o, argc, argv, "run", specs); while ((i = options_next(&o)) >= 0) use
+// Use: struct options o; options_start(&o, argc, argv, "fovstudy run", specs); while ((i = options_next(&o)) >=
+// 0) use
 //      o.value; stop on OPTIONS_ERROR (one sentence was printed; exit 2) and OPTIONS_HELP (the caller prints;
 //      exit 0).
 // "--name value", "--name=value", flags, words between and after; "--" ends the options.
-#ifndef APP_FOVSTUDY_OPTIONS_H
-#define APP_FOVSTUDY_OPTIONS_H
+#ifndef APP_COMMAND_OPTIONS_H
+#define APP_COMMAND_OPTIONS_H
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -22,10 +23,10 @@ struct option_spec {
 
 struct options {
     int argc;
-    char **argv; // borrowed; argv[0] is the subcommand
+    char **argv; // borrowed; argv[0] is the command
     int next;
     bool words_only;
-    const char *command;
+    const char *command; // as messages name it: "fovstudy run"
     const struct option_spec *specs;
     const char *value; // the argument, or the word
 };
@@ -35,9 +36,9 @@ void options_start(struct options *options, int argc, char **argv, const char *c
 // The index into specs; OPTIONS_WORD for a word that is no option; else one of the negative numbers above.
 int options_next(struct options *options);
 
-// One sentence on stderr, "fovstudy COMMAND: ...; see fovstudy COMMAND --help"; returns EXIT_USAGE.
+// One sentence on stderr, "COMMAND: ...; see COMMAND --help"; returns EXIT_USAGE.
 int options_wrong(const char *command, const char *format, ...) __attribute__((format(printf, 2, 3)));
-// "usage: fovstudy USAGE", a paragraph, and the table.
+// "usage: USAGE", a paragraph, and the table.
 void options_help(FILE *out, const char *usage, const char *about, const struct option_spec *specs);
 
 // Whole values; false where the text is anything else or out of range.

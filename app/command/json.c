@@ -1,4 +1,6 @@
-#include "app/fovstudy/json.h"
+#include "app/command/json.h"
+
+#include <math.h>
 
 void json_string(FILE *out, const char *text)
 {
@@ -16,4 +18,20 @@ void json_string(FILE *out, const char *text)
             fputc(*c, out);
     }
     fputc('"', out);
+}
+
+void json_number(FILE *out, double value)
+{
+    if (isfinite(value))
+        fprintf(out, "%.9g", value);
+    else
+        fputs("null", out);
+}
+
+void json_key(FILE *out, const char *name, bool first)
+{
+    if (!first)
+        fputc(',', out);
+    json_string(out, name);
+    fputc(':', out);
 }

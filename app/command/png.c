@@ -1,4 +1,4 @@
-#include "app/fovstudy/png.h"
+#include "app/command/png.h"
 
 #include <stb/stb_image_write.h>
 #include <stdio.h>

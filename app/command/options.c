@@ -1,4 +1,4 @@
-#include "app/fovstudy/options.h"
+#include "app/command/options.h"
 
 #include <errno.h>
 #include <math.h>
@@ -16,9 +16,9 @@ int options_wrong(const char *command, const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
-    fprintf(stderr, "fovstudy %s: ", command);
+    fprintf(stderr, "%s: ", command);
     vfprintf(stderr, format, arguments);
-    fprintf(stderr, "; see fovstudy %s --help\n", command);
+    fprintf(stderr, "; see %s --help\n", command);
     va_end(arguments);
     return EXIT_USAGE;
 }
@@ -83,7 +83,7 @@ int options_next(struct options *options)
 
 void options_help(FILE *out, const char *usage, const char *about, const struct option_spec *specs)
 {
-    fprintf(out, "usage: fovstudy %s\n\n%s\n", usage, about);
+    fprintf(out, "usage: %s\n\n%s\n", usage, about);
     if (specs && specs[0].name)
         fprintf(out, "\n");
     for (int i = 0; specs && specs[i].name; i++) {
