@@ -15,9 +15,9 @@ static const VkFormat colour_formats[] = {VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_R32
                                           VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_R16_UINT};
 enum { TARGETS = countof(colour_formats) };
 
-static const VkVertexInputBindingDescription vertex_binding = {0, sizeof(struct scene_vertex),
-                                                               VK_VERTEX_INPUT_RATE_VERTEX};
-static const VkVertexInputAttributeDescription attributes[] = {
+const VkVertexInputBindingDescription gbuffer_vertex_binding = {0, sizeof(struct scene_vertex),
+                                                                VK_VERTEX_INPUT_RATE_VERTEX};
+const VkVertexInputAttributeDescription gbuffer_attributes[GBUFFER_ATTRIBUTES] = {
     {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(struct scene_vertex, position)},
     {1, 0, VK_FORMAT_R16G16_SNORM, offsetof(struct scene_vertex, normal)},
     {2, 0, VK_FORMAT_R16G16B16A16_SNORM, offsetof(struct scene_vertex, tangent)},
@@ -29,9 +29,9 @@ static const VkVertexInputAttributeDescription attributes[] = {
 // In the order of colour_formats; NULL where the target is not built.
 static void targets(const struct gbuffer *g, const struct gpu_image *out[TARGETS])
 {
-    out[0] = &g->base;
-    out[1] = &g->normal;
-    out[2] = &g->surface;
+    out[0] = g->depth_only ? NULL : &g->base;
+    out[1] = g->depth_only ? NULL : &g->normal;
+    out[2] = g->depth_only ? NULL : &g->surface;
     out[3] = g->has_emissive ? &g->emissive : NULL;
     out[4] = g->has_id ? &g->id : NULL;
 }
@@ -47,9 +47,9 @@ static bool create_targets(struct gbuffer *g)
         struct gpu_image *image;
         bool wanted;
     } list[] = {
-        {"g-buffer base colour", colour_formats[0], colour, &g->base, true},
-        {"g-buffer normal", colour_formats[1], colour, &g->normal, true},
-        {"g-buffer surface", colour_formats[2], colour, &g->surface, true},
+        {"g-buffer base colour", colour_formats[0], colour, &g->base, !g->depth_only},
+        {"g-buffer normal", colour_formats[1], colour, &g->normal, !g->depth_only},
+        {"g-buffer surface", colour_formats[2], colour, &g->surface, !g->depth_only},
         {"g-buffer emissive", colour_formats[3], colour, &g->emissive, g->has_emissive},
         {"g-buffer id", colour_formats[4], colour, &g->id, g->has_id},
         {"g-buffer depth", VK_FORMAT_D32_SFLOAT, depth, &g->depth, true},
@@ -128,9 +128,9 @@ static bool create_pipelines(struct gbuffer *g)
                                                                 .vertex = {gbuffer_vert, sizeof gbuffer_vert},
                                                                 .fragment = fragment_code(g),
                                                                 .layout = g->layout,
-                                                                .vertex_binding = &vertex_binding,
-                                                                .attributes = attributes,
-                                                                .attribute_count = countof(attributes),
+                                                                .vertex_binding = &gbuffer_vertex_binding,
+                                                                .attributes = gbuffer_attributes,
+                                                                .attribute_count = GBUFFER_ATTRIBUTES,
                                                                 .colour_formats = formats,
                                                                 .colour_count = TARGETS,
                                                                 .depth_format = VK_FORMAT_D32_SFLOAT,
@@ -193,7 +193,8 @@ bool gbuffer_init(struct gbuffer *g, const struct gbuffer_desc *desc)
                           .scene = desc->scene,
                           .width = desc->width,
                           .height = desc->height,
-                          .has_emissive = (desc->scene->features & SCENE_GPU_EMISSIVE) != 0,
+                          .depth_only = desc->depth_only,
+                          .has_emissive = !desc->depth_only && desc->scene->features & SCENE_GPU_EMISSIVE,
                           .has_id = desc->ids};
     return create_targets(g) && create_layouts(g, desc->frame) && create_pipelines(g) &&
            (!desc->redraw_map || create_mask(g, desc));

@@ -18,6 +18,7 @@ layout(location = 3) in vec2 in_uv0;
 layout(location = 4) in vec2 in_uv1;
 layout(location = 5) in vec4 in_colour;
 
+invariant gl_Position; // a later pass over the same depths draws the same pixels
 layout(location = 0) out vec3 out_normal;
 layout(location = 1) out vec4 out_tangent;
 layout(location = 2) out vec4 out_colour;
