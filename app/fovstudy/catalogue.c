@@ -15,6 +15,8 @@ static const char *const off_on[] = {"off", "on", NULL};
 static const struct catalogue_parameter settings[] = {
     [STUDY_MOVING_OBJECTS] =
         {.name = "moving_objects", .unit = "", .min = 0, .max = 1, .fallback = 0, .choices = off_on},
+    [STUDY_SSAO] = {.name = "ssao", .unit = "", .min = 0, .max = 1, .fallback = 0, .choices = off_on},
+    [STUDY_TAA] = {.name = "taa", .unit = "", .min = 0, .max = 1, .fallback = 0, .choices = off_on},
 };
 
 bool study_bind_scene(struct bound_scene *bound, size_t *count, const char *text, char *error,

@@ -26,8 +26,9 @@ struct study_names {
     const char **scenes;                    // owned array of borrowed names
 };
 
-// The setting that lets objects move; its index in the catalogue's settings.
-enum { STUDY_MOVING_OBJECTS = 0 };
+// Settings of rendering, by their index in the catalogue: objects move, ambient occlusion, temporal
+// antialiasing.
+enum { STUDY_MOVING_OBJECTS, STUDY_SSAO, STUDY_TAA };
 
 // "NAME=SPEC" into the list; false with a sentence.
 bool study_bind_scene(struct bound_scene *bound, size_t *count, const char *text, char *error,

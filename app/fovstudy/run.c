@@ -54,6 +54,8 @@ static bool make_stage(struct run *run, char *error, size_t error_size)
         .ipd_m = VIEWING_DEFAULT_IPD_M,
         .reference = run->options.observer ? &reference : NULL,
         .moving_setting = STUDY_MOVING_OBJECTS,
+        .ssao_setting = STUDY_SSAO,
+        .taa_setting = STUDY_TAA,
     };
     if (!run->view.display)
         return true;

@@ -128,9 +128,28 @@ static void fill_fovea(const struct fovea_use *use, enum store_fovea source, str
     row->gaze_age_us = use->known ? (double)use->age_ns * 1e-3 : NAN;
 }
 
+// A full redraw costs what the option is there to save, so each one is told: JSON
+// {"cause":"gaze","option":"a"}.
+static void tell_redraw(const struct show *show, const struct machine_view *view,
+                        const struct recorder *recorder, int64_t at_ns, enum frame_redraw redraw)
+{
+    char detail[64];
+    if (redraw == FRAME_REDRAW_NONE)
+        return;
+    snprintf(detail, sizeof detail, "{\"cause\":\"%s\",\"option\":\"%s\"}", renderer_redraw_name(redraw),
+             plan_slot_name(view->slot));
+    store_push_event(show->desc->store, &(struct store_event){.session_id = show->desc->ids->session_id,
+                                                              .segment_id = show->desc->ids->segment_id,
+                                                              .trial_id = recorder->trial_id,
+                                                              .at_ns = at_ns,
+                                                              .kind = "full_redraw",
+                                                              .detail = detail});
+}
+
 // Renders the option of the view; fills what the row tells about it.
 static bool draw_option(struct show *show, const struct machine_view *view, const struct fovea *fovea,
-                        struct store_frame *row, char *error, size_t error_size)
+                        const struct recorder *recorder, struct store_frame *row, char *error,
+                        size_t error_size)
 {
     struct fovea_use use;
     struct frame_stats stats;
@@ -138,6 +157,9 @@ static bool draw_option(struct show *show, const struct machine_view *view, cons
     struct frame frame = stage_frame(show->desc->stage, view, show->number, &use, &row->head_pose);
     struct renderer_option *option = stage_option(show->desc->stage, view->slot);
     memset(&stats, 0, sizeof stats);
+    // held in place for longer than a blink, the fovea was where nobody looked (fovea.h)
+    frame.gaze_returned = show->gaze_lost && source == STORE_FOVEA_GAZE;
+    show->gaze_lost = source == STORE_FOVEA_LOST;
     if (!option || !renderer_draw(option, &frame, &stats)) {
         snprintf(error, error_size, "the GPU could not draw frame %llu", (unsigned long long)show->number);
         return false;
@@ -150,6 +172,7 @@ static bool draw_option(struct show *show, const struct machine_view *view, cons
                  (unsigned long long)show->number);
         return false;
     }
+    tell_redraw(show, view, recorder, row->start_ns, stats.redraw);
     fill_fovea(&use, source, row);
     row->condition_id = show->desc->ids->condition_ids[view->condition];
     row->cpu_us = stats.cpu_ms * 1e3;
@@ -218,7 +241,7 @@ bool show_frame(struct show *show, const struct machine_view *view, const struct
     struct renderer_option *option = NULL;
     bool visible = view->screen == MACHINE_STIMULUS && view->slot != PLAN_SLOT_NONE && view->fade < 1.0;
     if (visible) {
-        if (!draw_option(show, view, fovea, &row, error, error_size))
+        if (!draw_option(show, view, fovea, recorder, &row, error, error_size))
             return false;
         option = stage_option(show->desc->stage, view->slot);
     }

@@ -13,6 +13,7 @@ struct show {
     struct measure *measure; // NULL: errors are not measured
     uint64_t number;         // of the next frame
     int64_t last_present_ns; // -1: none
+    bool gaze_lost;          // at the last frame that was drawn
 };
 
 // False: out of memory.

@@ -97,12 +97,25 @@ static struct stage_scene *find_scene(struct stage *stage, const char *name)
     return NULL;
 }
 
-static bool make_option(struct stage *stage, int slot, uint32_t condition, char *error, size_t error_size)
+static bool is_on(const struct protocol_settings *settings, int index)
+{
+    return index >= 0 && settings->render[index] > 0.5;
+}
+
+static struct renderer_settings render_settings(const struct stage *stage,
+                                                const struct protocol_settings *settings)
+{
+    return (struct renderer_settings){.ssao = is_on(settings, stage->desc.ssao_setting),
+                                      .taa = is_on(settings, stage->desc.taa_setting)};
+}
+
+static bool make_option(struct stage *stage, int slot, uint32_t condition,
+                        const struct renderer_settings *settings, char *error, size_t error_size)
 {
     struct mode_choice choice;
     if (stage_choice(&stage->desc.plan->conditions[condition], &choice))
         stage->options[slot] =
-            renderer_option_create(stage->desc.renderer, stage->scene->resident, &choice, NULL);
+            renderer_option_create(stage->desc.renderer, stage->scene->resident, &choice, settings);
     if (stage->options[slot])
         return true;
     snprintf(error, error_size, "the mode '%s' cannot be set up on this device for the scene '%s'",
@@ -110,12 +123,13 @@ static bool make_option(struct stage *stage, int slot, uint32_t condition, char 
     return false;
 }
 
-static bool make_reference(struct stage *stage, char *error, size_t error_size)
+static bool make_reference(struct stage *stage, const struct renderer_settings *settings, char *error,
+                           size_t error_size)
 {
     if (!stage->desc.reference)
         return true;
     stage->reference =
-        renderer_option_create(stage->desc.renderer, stage->scene->resident, stage->desc.reference, NULL);
+        renderer_option_create(stage->desc.renderer, stage->scene->resident, stage->desc.reference, settings);
     if (!stage->reference)
         snprintf(error, error_size, "the reference cannot be set up on this device for the scene '%s'",
                  stage->scene->name);
@@ -138,11 +152,12 @@ bool stage_prepare(struct stage *stage, uint32_t trial, char *error, size_t erro
     const struct plan_trial *planned = &stage->desc.plan->trials[trial];
     if (stage->trial == (int64_t)trial)
         return true;
+    const struct renderer_settings settings = render_settings(stage, planned->resolved);
     bool done = enter_scene(stage, find_scene(stage, planned->scene), planned->scene, error, error_size);
     for (int slot = 0; done && slot < 2; slot++)
         if (planned->option[slot] >= 0)
-            done = make_option(stage, slot, (uint32_t)planned->option[slot], error, error_size);
-    done = done && make_reference(stage, error, error_size);
+            done = make_option(stage, slot, (uint32_t)planned->option[slot], &settings, error, error_size);
+    done = done && make_reference(stage, &settings, error, error_size);
     if (done)
         stage->trial = (int64_t)trial;
     else
@@ -150,13 +165,25 @@ bool stage_prepare(struct stage *stage, uint32_t trial, char *error, size_t erro
     return done;
 }
 
+// Those of the first trial that shows the condition; as in any trial that does, where all agree.
+static struct renderer_settings settings_of_condition(const struct stage *stage, uint32_t condition)
+{
+    const struct plan *plan = stage->desc.plan;
+    for (uint32_t i = 0; i < plan->trial_count; i++)
+        for (int slot = 0; slot < 2; slot++)
+            if (plan->trials[i].option[slot] == (int32_t)condition)
+                return render_settings(stage, plan->trials[i].resolved);
+    return (struct renderer_settings){0};
+}
+
 bool stage_prepare_condition(struct stage *stage, uint32_t condition, size_t scene, char *error,
                              size_t error_size)
 {
+    const struct renderer_settings settings = settings_of_condition(stage, condition);
     struct stage_scene *wanted = &stage->desc.scenes[scene];
     bool done = enter_scene(stage, wanted, wanted->name, error, error_size) &&
-                make_option(stage, PLAN_SLOT_A, condition, error, error_size) &&
-                make_reference(stage, error, error_size);
+                make_option(stage, PLAN_SLOT_A, condition, &settings, error, error_size) &&
+                make_reference(stage, &settings, error, error_size);
     if (!done)
         clear_options(stage);
     return done;
@@ -177,13 +204,13 @@ struct frame stage_frame(const struct stage *stage, const struct machine_view *v
 {
     const struct protocol_settings *settings = view->trial->resolved;
     double time_s = (double)view->stimulus_ns * 1e-9;
-    int moving = stage->desc.moving_setting;
+    const bool moving = is_on(settings, stage->desc.moving_setting);
     *out_head =
         camera_path_pose(&stage->scene->scene->path, settings->camera == PROTOCOL_CAMERA_STILL ? 0.0 : time_s);
     struct frame frame = {
         .number = number,
-        .moving = moving >= 0 && settings->render[moving] > 0.5,
-        .animation_s = moving >= 0 && settings->render[moving] > 0.5 ? time_s : 0.0,
+        .moving = moving,
+        .animation_s = moving ? time_s : 0.0,
         .cut = view->trial_started,
     };
     for (int eye = 0; eye < EYES; eye++)

@@ -31,7 +31,9 @@ struct stage_desc {
     struct viewing_fov fov; // of each eye
     double ipd_m;
     const struct mode_choice *reference; // copied; made for each trial, to measure against; NULL: not
-    int moving_setting; // index of the protocol's setting that lets objects move; -1: they never do
+    // Indices of the protocol's settings that let objects move and switch ambient occlusion and temporal
+    // antialiasing on; -1: never.
+    int moving_setting, ssao_setting, taa_setting;
 };
 
 struct stage;

@@ -14,7 +14,7 @@
 // its colour;
 // - colours are averaged, and L is measured, in the tone-mapped and encoded 8-bit values that are kept;
 // - the pyramid ends where A^m < epsilon, since deeper holes are redrawn whatever their colour;
-// - the or-pyramid of the redraw map begins at 8x8 pixels, and a box is looked up in 4x4 of its texels, not
+// - the or-pyramid of the redraw map begins at 8x8 pixels, and a box is looked up in 8x8 of its texels, not
 // 2x2;
 // - moving pixels are redrawn by whole tiles in turn, every as many frames as D^t needs to fall under epsilon,
 // and

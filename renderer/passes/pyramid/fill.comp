@@ -18,6 +18,7 @@ layout(binding = 5, r8ui) uniform uimage2DArray redraw_map;
 layout(push_constant) uniform Push {
     float epsilon, fovea_deg, periphery_deg, hole_decay, dynamic_decay;
     uint levels, turn;
+    float trusted_cosine; // of the angle at which c_e reaches epsilon; above 1: nothing is too near
 } push;
 
 float eccentricity_confidence(ivec3 pixel, vec2 place)
@@ -79,9 +80,18 @@ void main()
     ivec3 pixel = ivec3(gl_GlobalInvocationID);
     if (pixel.x >= int(frame.width) || pixel.y >= int(frame.height))
         return;
-    float confidence = eccentricity_confidence(pixel, vec2(pixel.xy) + 0.5);
-    float w = imageLoad(position, pixel).w, depth = 0.0;
+    float w = imageLoad(position, pixel).w, depth = 0.0, confidence = 1.0;
     vec4 filled = vec4(0.0);
+    // c <= c_e, and c_e < epsilon is a matter of the angle alone: most pixels need no more
+    const shared_eye eye = frame.eyes[pixel.z];
+    vec3 ray = view_ray(eye, vec2(frame.width, frame.height), vec2(pixel.xy) + 0.5);
+    bool redraw = push.epsilon >= 1.0 || (push.epsilon > 0.0 && view_within(eye, ray, push.trusted_cosine));
+    if (redraw) {
+        imageStore(redraw_map, pixel, uvec4(1u));
+        return;
+    }
+    if (w == 0.0 || w >= 2.0)
+        confidence = eccentricity_confidence(pixel, vec2(pixel.xy) + 0.5);
     if (w == 0.0) {
         int m = 0;
         while (filled.a == 0.0 && m < int(push.levels))
@@ -90,7 +100,7 @@ void main()
     } else if (w >= 2.0) {
         confidence *= pow(push.dynamic_decay, round(fract(w) * 64.0)); // c_d(t), section 7
     }
-    bool redraw = push.epsilon >= 1.0 || confidence < push.epsilon;
+    redraw = confidence < push.epsilon;
 #ifdef MOVING
     redraw = redraw || imageLoad(redraw_map, pixel).x != 0u || (w >= 2.0 && tiles_turn(pixel));
 #endif

@@ -7,6 +7,8 @@
 #include "pull.comp.h"
 #include "pull.comp_first.h"
 
+#include <math.h>
+
 static const struct gpu_binding pull_bindings[] = {
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // frame
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},  // colour, of the first dispatch
@@ -170,10 +172,20 @@ void pyramid_pull(const struct pyramid *p, VkCommandBuffer cmd, uint32_t target)
     }
 }
 
+// c_e = S_1(x) = x^2 (3 - 2 x) reaches epsilon at x = 1/2 - sin(asin(1 - 2 epsilon) / 3).
+static double trusted_cosine(const struct pyramid_confidence *c)
+{
+    const double epsilon = (double)c->epsilon,
+                 width = fmax((double)c->periphery_deg - (double)c->fovea_deg, 1e-3);
+    const double x = 0.5 - sin(asin(1 - 2 * fmin(fmax(epsilon, 0), 1)) / 3);
+    return cos(fmin((double)c->fovea_deg + x * width, 180) * 0.017453292519943295);
+}
+
 void pyramid_fill(const struct pyramid *p, VkCommandBuffer cmd, uint32_t target, uint32_t turn)
 {
     struct pyramid_confidence push = p->confidence;
     push.turn = turn;
+    push.trusted_cosine = (float)trusted_cosine(&push);
     gpu_dispatch(cmd, &p->fill, p->fill_sets[target], &push, sizeof push,
                  (p->width + SHARED_TILE - 1) / SHARED_TILE, (p->height + SHARED_TILE - 1) / SHARED_TILE, 2);
 }

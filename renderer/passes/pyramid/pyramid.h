@@ -18,6 +18,7 @@ struct pyramid_confidence {
     float dynamic_decay;            // D
     uint32_t levels;                // set by pyramid_init
     uint32_t turn;                  // set by pyramid_fill
+    float trusted_cosine;           // set by pyramid_fill
 };
 
 struct pyramid {

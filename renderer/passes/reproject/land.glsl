@@ -26,7 +26,9 @@ landing land(ivec3 source)
     vec2 at = floor(view_pixel(frame.eyes[source.z], size, p));
     if (!all(greaterThanEqual(at, vec2(0.0))) || !all(lessThan(at, size)))
         return nowhere;
-    if (view_eccentricity_deg(frame.eyes[source.z], view_ray(frame.eyes[source.z], size, at + 0.5)) < push.drop_deg)
+    if (push.drop_cosine <= 1.0 &&
+        view_within(frame.eyes[source.z], view_ray(frame.eyes[source.z], size, at + 0.5), push.drop_cosine))
         return nowhere;
-    return landing(true, at, direction ? 0.0 : frame.near_m / -p.z);
+    // far beyond everything all surfaces are alike, and none is denormal, which devices treat differently
+    return landing(true, at, direction ? 0.0 : max(frame.near_m / -p.z, 1e-35));
 }

@@ -9,7 +9,7 @@
 layout(scalar, binding = 0) readonly buffer Frame { shared_frame frame; };
 layout(scalar, binding = 1) readonly buffer Motions { mat4 motions[]; };
 layout(binding = 2, rgba32f) uniform readonly image2DArray position_image;
-layout(push_constant) uniform Push { float drop_deg; uint drop_moving; uint eye; } push;
+layout(push_constant) uniform Push { float drop_cosine; uint drop_moving; uint eye; } push;
 
 #include "renderer/passes/reproject/move.glsl"
 #include "renderer/passes/reproject/land.glsl"

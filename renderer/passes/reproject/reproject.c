@@ -8,6 +8,7 @@
 #include "resolve.comp_points.h"
 #include "splat.comp.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { FRAME, MOTIONS, POSITION, KEYS, SPLAT_BINDINGS };
@@ -35,7 +36,7 @@ static const struct gpu_binding resolve_bindings[RESOLVE_BINDINGS] = {
 };
 
 struct push {
-    float drop_deg;
+    float drop_cosine; // above 1: none are dropped
     uint32_t drop_moving, eye;
 };
 
@@ -211,7 +212,8 @@ void reproject_record(const struct reproject *r, VkCommandBuffer cmd, uint32_t f
     const VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
     const uint32_t x = (r->width + SHARED_TILE - 1) / SHARED_TILE,
                    y = (r->height + SHARED_TILE - 1) / SHARED_TILE;
-    const struct push push = {drop_deg, drop_moving, 0};
+    const struct push push = {drop_deg > 0 ? (float)cos((double)drop_deg * 0.017453292519943295) : 2,
+                              drop_moving, 0};
     gpu_barrier(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
     if (r->points) {
         draw_points(r, cmd, from, push);

@@ -47,25 +47,60 @@ ivec2 source_pixel(uint inverted)
     return ivec2(index % frame.width, index / frame.width);
 }
 
-// What shows between the spread pixels of a nearer surface: in at least two of the four directions across the pixel
-// both neighbours are more than 10 % nearer (so at least four of the eight are, and six always suffice; an edge or a
-// corner of a nearer surface has them on one side only), and the pixel did not lie between those two in the last frame
-// either, as what is seen through a real gap did.
-bool shows_through(ivec3 pixel, ivec2 source)
+// A kept point's reversed depth in this frame, 0 for the background.
+float depth_now(vec4 position, int eye)
+{
+    if (position.w < 0.0)
+        return 0.0;
+    vec4 forward = frame.eyes[eye].forward;
+    return frame.near_m / (dot(forward.xyz, move_position(position).xyz) + forward.w);
+}
+
+// What shows between the spread pixels of a nearer surface: in one of the four directions across the pixel there are
+// pixels with more than 1.1 times its reversed depth on both sides, at most REACH away, and the last frame held nothing
+// as far off between the nearest two of them, where what is seen through a real gap was. Looked at there are the one or
+// two pixels of the line between their sources that divide it as the pixel divides them; sources that touch have none
+// between them.
+const int REACH = 3;
+
+// The steps to the next pixel nearer than `depth`, 0 where there is none.
+int next_nearer(ivec3 pixel, ivec2 direction, float depth)
+{
+    for (int i = 1; i <= REACH; i++) {
+        ivec3 at = ivec3(pixel.xy + i * direction, pixel.z);
+        if (any(lessThan(at.xy, ivec2(0))) || at.x >= int(frame.width) || at.y >= int(frame.height))
+            return 0;
+        if (depth_at(at) > depth)
+            return i;
+    }
+    return 0;
+}
+
+bool was_gap(ivec3 a, ivec3 b, int part, int whole)
+{
+    ivec2 from = source_pixel(source_at(a)), way = source_pixel(source_at(b)) - from;
+    int steps = max(abs(way.x), abs(way.y));
+    float nearest = min(depth_at(a), depth_at(b));
+    for (int i = max(part * steps / whole, 1); i <= min((part * steps + whole - 1) / whole, steps - 1); i++) {
+        ivec2 at = from + (2 * way * i + sign(way) * steps) / (2 * steps); // rounded
+        vec4 p = imageLoad(position_from, ivec3(at, a.z));
+        if (p.w != 0.0 && 1.1 * depth_now(p, a.z) < nearest)
+            return true;
+    }
+    return false;
+}
+
+bool shows_through(ivec3 pixel)
 {
     const ivec2 across[4] = ivec2[4](ivec2(1, 0), ivec2(0, 1), ivec2(1, 1), ivec2(1, -1));
     float nearer = max(1.1 * depth_at(pixel), 1e-36);
-    int pairs = 0;
-    if (any(lessThan(pixel.xy, ivec2(1))) || pixel.x + 1 >= int(frame.width) || pixel.y + 1 >= int(frame.height))
-        return false;
-    for (int i = 0; i < 4; i++) {
-        ivec3 a = pixel + ivec3(across[i], 0), b = pixel - ivec3(across[i], 0);
-        if (min(depth_at(a), depth_at(b)) > nearer) {
-            ivec2 twice_middle = source_pixel(source_at(a)) + source_pixel(source_at(b));
-            pairs += any(greaterThan(abs(2 * source - twice_middle), ivec2(2))) ? 1 : 0;
-        }
+    for (int k = 0; k < 4; k++) {
+        int i = next_nearer(pixel, across[k], nearer);
+        int j = i > 0 ? next_nearer(pixel, -across[k], nearer) : 0;
+        if (j > 0 && !was_gap(pixel + ivec3(i * across[k], 0), pixel - ivec3(j * across[k], 0), i, i + j))
+            return true;
     }
-    return pairs >= 2;
+    return false;
 }
 
 void main()
@@ -76,7 +111,7 @@ void main()
     uint inverted = source_at(pixel);
     vec4 position = vec4(0.0), colour = vec4(0.0);
     ivec3 source = ivec3(source_pixel(inverted), pixel.z);
-    if (inverted != 0u && !shows_through(pixel, source.xy)) {
+    if (inverted != 0u && !shows_through(pixel)) {
         position = move_position(imageLoad(position_from, source));
         colour = imageLoad(colour_from, source);
         // one frame older, up to 63

@@ -1,6 +1,7 @@
 #include "tests/renderer/passes/rig.h"
 
 #include "copy_texels.comp.h"
+#include "copy_texels.comp_single.h"
 #include "copy_words.comp.h"
 
 #include <math.h>
@@ -58,7 +59,14 @@ bool rig_open(struct rig *rig)
                                                          .code = {copy_texels_comp, sizeof copy_texels_comp},
                                                          .bindings = texels_bindings,
                                                          .binding_count = 2},
-                               &rig->texels),
+                               &rig->texels) &&
+             gpu_kernel_create(
+                 rig->gpu,
+                 &(struct gpu_kernel_desc){.name = "copy single texels",
+                                           .code = {copy_texels_comp_single, sizeof copy_texels_comp_single},
+                                           .bindings = texels_bindings,
+                                           .binding_count = 2},
+                 &rig->single_texels),
          "the rig");
     memset(rig->counters.mapped, 0, sizeof(struct shared_counters));
     return true;
@@ -68,6 +76,7 @@ void rig_close(struct rig *rig)
 {
     gpu_kernel_destroy(rig->gpu, &rig->words);
     gpu_kernel_destroy(rig->gpu, &rig->texels);
+    gpu_kernel_destroy(rig->gpu, &rig->single_texels);
     gpu_buffer_destroy(rig->gpu, &rig->frame);
     gpu_buffer_destroy(rig->gpu, &rig->counters);
     const uint32_t messages = rig->gpu->validation_messages;
@@ -198,7 +207,9 @@ void rig_read_level(struct rig *rig, const struct gpu_image *image, uint32_t lev
     const uint32_t height = image->height >> level ? image->height >> level : 1;
     VkImageView view = gpu_image_level_view(rig->gpu, image, level);
     need(rig, view != VK_NULL_HANDLE, "a view");
-    dispatch_into(rig, &rig->texels, texels_bindings, (struct gpu_resource){.view = view},
+    const struct gpu_kernel *kernel =
+        image->format == VK_FORMAT_R32_SFLOAT ? &rig->single_texels : &rig->texels;
+    dispatch_into(rig, kernel, texels_bindings, (struct gpu_resource){.view = view},
                   (size_t)width * height * EYES * 4 * sizeof(float), NULL,
                   (const uint32_t[]){(width + 7) / 8, (height + 7) / 8, EYES}, out_rgba);
     vkDestroyImageView(rig->gpu->device, view, NULL);
@@ -238,6 +249,10 @@ static void fill_eye(struct shared_eye *out, const struct rig_eye *eye, struct d
     const double tangents[] = {f->tan_left, f->tan_right, f->tan_down, f->tan_up};
     for (int i = 0; i < 4; i++)
         out->tangents[i] = (float)tangents[i];
+    const struct fmat4 projection =
+        geometry_projection(f->tan_left, f->tan_right, f->tan_down, f->tan_up, VIEWING_NEAR_M);
+    const struct fmat4 view = geometry_view(&eye->pose, origin), clip = fmat4_multiply(&projection, &view);
+    memcpy(out->clip_from_world, clip.m, sizeof clip.m);
     const bool gaze = isfinite(eye->gaze_x_deg) && isfinite(eye->gaze_y_deg);
     if (gaze)
         store(out->gaze, viewing_direction(eye->gaze_x_deg, eye->gaze_y_deg), 1);

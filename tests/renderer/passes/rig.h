@@ -16,7 +16,7 @@ struct rig {
     struct gpu *gpu;
     struct gpu_buffer frame;    // shared_frame
     struct gpu_buffer counters; // shared_counters
-    struct gpu_kernel words, texels;
+    struct gpu_kernel words, texels, single_texels;
     char log[4096]; // every sentence so far
 };
 
@@ -34,7 +34,7 @@ struct gpu_image rig_sampled(struct rig *rig, VkFormat format, uint32_t width, u
 // Both layers, tightly packed; the image stays in GENERAL.
 void rig_upload(struct rig *rig, const struct gpu_image *image, uint32_t texel_bytes, const void *texels);
 void rig_download(struct rig *rig, const struct gpu_image *image, uint32_t texel_bytes, void *out_texels);
-// One mip level of a half-float image: levels' width * height * 2 layers, rgba.
+// One mip level of a half-float or r32 float image: the level's width * height * 2 layers, rgba.
 void rig_read_level(struct rig *rig, const struct gpu_image *image, uint32_t level, float *out_rgba);
 void rig_read_words(struct rig *rig, const struct gpu_buffer *buffer, uint32_t count, void *out_words);
 
