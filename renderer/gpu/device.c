@@ -271,6 +271,7 @@ static bool create_device(struct gpu *gpu)
         .samplerAnisotropy = VK_TRUE,
         .shaderStorageImageExtendedFormats = VK_TRUE,
         .shaderInt64 = has.core.features.shaderInt64,
+        .fragmentStoresAndAtomics = has.core.features.fragmentStoresAndAtomics,
     };
     use.v11.shaderDrawParameters = VK_TRUE;
     use.v12.drawIndirectCount = VK_TRUE;
@@ -291,7 +292,6 @@ static bool create_device(struct gpu *gpu)
     gpu->shading_rate = gpu_shading_rate_of(gpu->physical);
     if (gpu->shading_rate.texel) {
         extensions[extension_count++] = VK_KHR_FRAGMENT_SHADING_RATE_EXTENSION_NAME;
-        use.core.features.fragmentStoresAndAtomics = VK_TRUE;
         use.v13.pNext = &rate;
     }
     const VkDeviceCreateInfo info = {

@@ -243,7 +243,6 @@ static void what_hardware_lacks_is_said(void **state)
     struct mode_choice choice;
     char error[512];
     assert_true(mode_parse("vrs:path=hardware", &choice, error, sizeof error));
-    stage->log[0] = '\0';
     struct renderer_option *option = renderer_option_create(stage->renderer, uploaded, &choice, NULL);
     if (option) { // a device that has it must draw
         const struct frame frame = stage_frame(stage, scene, 0, 0, 0, 0);

@@ -26,7 +26,6 @@ vec3 fragment_direction()
 
 void write_radiance(vec3 radiance)
 {
-    if (!gl_HelperInvocation)
-        atomicAdd(counters.shaded_px, 1u);
+    atomicAdd(counters.shaded_px, 1u); // without effect in helper invocations
     out_hdr = vec4(min(radiance, vec3(65504.0)), 1.0); // the largest half float
 }

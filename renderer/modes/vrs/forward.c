@@ -21,7 +21,7 @@ struct rate_push {
     uint32_t texel, middle, outermost;
 };
 
-static bool create_images(struct forward *f)
+static bool create_rates(struct forward *f)
 {
     const uint32_t texel = f->gpu->shading_rate.texel;
     const struct gpu_image_desc rates = {.name = "shading rates",
@@ -32,6 +32,11 @@ static bool create_images(struct forward *f)
                                          .array = true,
                                          .usage = VK_IMAGE_USAGE_STORAGE_BIT |
                                                   VK_IMAGE_USAGE_FRAGMENT_SHADING_RATE_ATTACHMENT_BIT_KHR};
+    return gpu_image_create(f->gpu, &rates, &f->rates);
+}
+
+static bool create_hdr(struct forward *f)
+{
     const struct gpu_image_desc hdr = {.name = "hdr",
                                        .format = hdr_format,
                                        .width = f->width,
@@ -40,7 +45,7 @@ static bool create_images(struct forward *f)
                                        .array = true,
                                        .usage =
                                            VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_STORAGE_BIT};
-    return gpu_image_create(f->gpu, &rates, &f->rates) && gpu_image_create(f->gpu, &hdr, &f->hdr);
+    return gpu_image_create(f->gpu, &hdr, &f->hdr);
 }
 
 static bool create_rate_kernel(struct forward *f, const struct gpu_buffer *frame)
@@ -111,7 +116,7 @@ static VkPipeline create_pipeline(const struct forward *f, const int32_t *consta
                                    .depth_format = VK_FORMAT_D32_SFLOAT,
                                    .depth_compare = VK_COMPARE_OP_EQUAL,
                                    .keep_depth = true,
-                                   .shading_rate = true,
+                                   .shading_rate = f->mapped,
                                    .constants = constants,
                                    .constant_count = CONSTANTS};
     if (sky) { // a triangle over the screen at depth 0, infinity
@@ -149,11 +154,13 @@ bool forward_init(struct forward *f, const struct mode_setup *setup, const struc
                           .scene = setup->scene,
                           .width = setup->width,
                           .height = setup->height,
+                          .mapped = setup->gpu->shading_rate.texel > 0,
                           .inner_deg = inner_deg,
                           .outer_deg = outer_deg};
     f->sampler = gpu_sampler_create_plain(f->gpu);
     f->compare = gpu_sampler_create_compare(f->gpu);
-    return f->sampler && f->compare && create_images(f) && create_rate_kernel(f, setup->frame) &&
+    return f->sampler && f->compare && create_hdr(f) &&
+           (!f->mapped || (create_rates(f) && create_rate_kernel(f, setup->frame))) &&
            create_layouts(f, setup, d) && create_pipelines(f, d, setup->shadow_map);
 }
 
@@ -180,6 +187,8 @@ void forward_finish(struct forward *f)
 void forward_rates(const struct forward *f, VkCommandBuffer cmd)
 {
     const struct gpu_shading_rate *rate = &f->gpu->shading_rate;
+    if (!f->mapped)
+        return;
     const struct rate_push push = {.inner_deg = f->inner_deg,
                                    .outer_deg = f->outer_deg,
                                    .texel = rate->texel,
@@ -249,7 +258,7 @@ static void draw_eye(const struct forward *f, VkCommandBuffer cmd, const struct 
         .shadingRateAttachmentTexelSize = {texel, texel}};
     const VkRect2D area = {.extent = {f->width, f->height}};
     vkCmdBeginRendering(cmd, &(VkRenderingInfo){.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
-                                                .pNext = &rates,
+                                                .pNext = f->mapped ? &rates : NULL,
                                                 .renderArea = area,
                                                 .layerCount = 1,
                                                 .colorAttachmentCount = 1,
@@ -268,6 +277,8 @@ static void draw_eye(const struct forward *f, VkCommandBuffer cmd, const struct 
 void forward_record(const struct forward *f, VkCommandBuffer cmd, const struct deferred *d)
 {
     gpu_image_layout(cmd, &f->hdr, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+    // ambient occlusion is left ready for kernels only
+    gpu_barrier(cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);
     for (uint32_t eye = 0; eye < 2; eye++)
         draw_eye(f, cmd, d, eye);
     gpu_image_layout(cmd, &f->hdr, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL);

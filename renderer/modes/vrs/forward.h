@@ -10,6 +10,8 @@ struct forward {
     const struct scene_gpu *scene;
     uint32_t width, height;
     float inner_deg, outer_deg;
+    bool mapped; // false where the device has no map of rates: every pixel is shaded (vrs refuses; tests
+                 // compare)
     struct gpu_image rates; // r8 uint, two layers
     struct gpu_image hdr;   // rgba16f, two layers, GENERAL after forward_record
     struct gpu_kernel rate;

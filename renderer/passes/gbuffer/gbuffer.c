@@ -1,6 +1,8 @@
 #include "renderer/passes/gbuffer/gbuffer.h"
 
 #include "gbuffer.frag.h"
+#include "gbuffer.frag_depth.h"
+#include "gbuffer.frag_depth_id.h"
 #include "gbuffer.frag_emissive.h"
 #include "gbuffer.frag_emissive_id.h"
 #include "gbuffer.frag_id.h"
@@ -93,8 +95,13 @@ static bool create_layouts(struct gbuffer *g, const struct gpu_buffer *frame)
     return g->frame_set && VK(g->gpu, vkCreatePipelineLayout(g->gpu->device, &info, NULL, &g->layout));
 }
 
-static struct gpu_code fragment_code(const struct gbuffer *g)
+static struct gpu_code fragment_code(const struct gbuffer *g, uint32_t features)
 {
+    if (g->depth_only && g->has_id)
+        return (struct gpu_code){gbuffer_frag_depth_id, sizeof gbuffer_frag_depth_id};
+    if (g->depth_only)
+        return features & SCENE_GPU_MASK ? (struct gpu_code){gbuffer_frag_depth, sizeof gbuffer_frag_depth}
+                                         : (struct gpu_code){0};
     if (g->has_emissive)
         return g->has_id ? (struct gpu_code){gbuffer_frag_emissive_id, sizeof gbuffer_frag_emissive_id}
                          : (struct gpu_code){gbuffer_frag_emissive, sizeof gbuffer_frag_emissive};
@@ -126,7 +133,7 @@ static bool create_pipelines(struct gbuffer *g)
         VkPipeline pipeline =
             gpu_raster_create(g->gpu, &(struct gpu_raster_desc){.name = "g-buffer",
                                                                 .vertex = {gbuffer_vert, sizeof gbuffer_vert},
-                                                                .fragment = fragment_code(g),
+                                                                .fragment = fragment_code(g, features),
                                                                 .layout = g->layout,
                                                                 .vertex_binding = &gbuffer_vertex_binding,
                                                                 .attributes = gbuffer_attributes,

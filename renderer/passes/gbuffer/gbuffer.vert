@@ -18,7 +18,6 @@ layout(location = 3) in vec2 in_uv0;
 layout(location = 4) in vec2 in_uv1;
 layout(location = 5) in vec4 in_colour;
 
-invariant gl_Position; // a later pass over the same depths draws the same pixels
 layout(location = 0) out vec3 out_normal;
 layout(location = 1) out vec4 out_tangent;
 layout(location = 2) out vec4 out_colour;
@@ -39,7 +38,9 @@ void main()
 {
     shared_item item = items[gl_InstanceIndex];
     mat4 m = objects[item.object].world_from_mesh;
-    gl_Position = frame.eyes[push.eye].clip_from_world * vec4((m * vec4(in_position, 1.0)).xyz, 1.0);
+    // the same to the last bit in every pipeline, so that a later pass over the same depths draws the same pixels
+    precise vec4 position = frame.eyes[push.eye].clip_from_world * vec4((m * vec4(in_position, 1.0)).xyz, 1.0);
+    gl_Position = position;
     // normals go with the cofactor matrix, right for mirrored and unevenly scaled objects alike
     mat3 linear = mat3(m);
     mat3 cofactor = mat3(cross(linear[1], linear[2]), cross(linear[2], linear[0]), cross(linear[0], linear[1]));
