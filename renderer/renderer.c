@@ -172,8 +172,8 @@ struct renderer_option *renderer_option_create(struct renderer *r, struct render
                                      .counters = &o->counters,
                                      .explanation = &o->explanation};
     explain_shadow(o);
-    if (gpu_buffer_create(r->gpu, "frame constants", sizeof(struct shared_frame), usage, GPU_HOST,
-                          &o->constants) &&
+    if (gpu_buffer_create(r->gpu, "frame constants", sizeof(struct shared_frame),
+                          usage | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, GPU_HOST, &o->constants) &&
         gpu_buffer_create(r->gpu, "counters", sizeof(struct shared_counters), usage, GPU_HOST, &o->counters) &&
         (o->state = choice->mode->create(&setup)))
         return o;

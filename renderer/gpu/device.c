@@ -321,6 +321,7 @@ static bool create_pools(struct gpu *gpu)
         {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 32768},
         {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 8192},
         {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 16384},
+        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 8192},
     };
     const VkDescriptorPoolCreateInfo descriptors = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                                                     .flags = VK_DESCRIPTOR_POOL_CREATE_FREE_DESCRIPTOR_SET_BIT,

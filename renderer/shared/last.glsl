@@ -8,7 +8,7 @@ vec3 last_pixel(uint eye, vec4 position)
     vec3 p = position.xyz;
     if (position.w >= 2.0 && frame.moving != 0u)
         p = (motions[push.motion_count + uint(position.w) - 1u] * vec4(p, 1.0)).xyz;
-    vec4 clip = frame.eyes[eye].last_clip_from_world * vec4(p, position.w < 0.0 ? 0.0 : 1.0);
+    vec4 clip = frame_eye(eye).last_clip_from_world * vec4(p, position.w < 0.0 ? 0.0 : 1.0);
     if (!(clip.w > 1e-6)) // also where an object's motion is no number
         return vec3(-1e6, -1e6, 0.0);
     return vec3((clip.xy / clip.w * 0.5 + 0.5) * vec2(frame.width, frame.height), position.w < 0.0 ? 0.0 : clip.w);

@@ -10,7 +10,7 @@
 enum { ID = 4, TILES, BINDINGS };
 
 static const struct gpu_binding all_bindings[BINDINGS] = {
-    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},         // frame
+    {.type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},         // frame
     {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, // depth
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},          // redraw map
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},          // position

@@ -7,7 +7,8 @@
 
 layout(local_size_x = SHARED_TILE, local_size_y = SHARED_TILE) in;
 
-layout(scalar, binding = 0) readonly buffer Frame { shared_frame frame; };
+layout(scalar, binding = 0) uniform Frame { shared_frame frame; };
+#include "renderer/shared/eye.glsl"
 layout(binding = 1) uniform sampler2DArray depth_image;
 layout(binding = 2, r8ui) uniform readonly uimage2DArray redraw_map;
 layout(binding = 3, rgba32f) uniform writeonly image2DArray position_image;
@@ -28,8 +29,8 @@ void main()
     }
     if (pixel.x >= int(frame.width) || pixel.y >= int(frame.height) || imageLoad(redraw_map, pixel).x == 0u)
         return;
-    vec3 ray = view_ray(frame.eyes[pixel.z], vec2(frame.width, frame.height), vec2(pixel.xy) + 0.5 - frame.jitter);
-    mat4 world_from_eye = frame.eyes[pixel.z].world_from_eye;
+    vec3 ray = view_ray(frame_eye(uint(pixel.z)), vec2(frame.width, frame.height), vec2(pixel.xy) + 0.5 - frame.jitter);
+    mat4 world_from_eye = frame_eye(uint(pixel.z)).world_from_eye;
     vec3 direction = mat3(world_from_eye) * ray;
     float depth = texelFetch(depth_image, pixel, 0).x;
     vec4 position = vec4(normalize(direction), -1.0);

@@ -9,7 +9,7 @@
 enum { COUNTERS = 6, PYRAMID, COUNT_BINDINGS };
 
 static const struct gpu_binding count_bindings[COUNT_BINDINGS] = {
-    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // frame
+    {.type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}, // frame
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // items
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // objects
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // groups
@@ -24,7 +24,7 @@ struct count_push {
 };
 
 static const struct gpu_binding emit_bindings[] = {
-    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // frame
+    {.type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}, // frame
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // items
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // groups
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // visible

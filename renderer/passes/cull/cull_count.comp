@@ -7,7 +7,8 @@
 
 layout(local_size_x = SHARED_CULL_GROUP) in;
 
-layout(scalar, binding = 0) readonly buffer Frame { shared_frame frame; };
+layout(scalar, binding = 0) uniform Frame { shared_frame frame; };
+#include "renderer/shared/eye.glsl"
 layout(scalar, binding = 1) readonly buffer Items { shared_item items[]; };
 layout(scalar, binding = 2) readonly buffer Objects { shared_object objects[]; };
 layout(scalar, binding = 3) readonly buffer Groups { shared_cull_group groups[]; };
@@ -36,7 +37,7 @@ bool seen(shared_item item, uint eye)
     vec3 half_size = 0.5 * (item.box_max - item.box_min);
     mat3 extent = mat3(m[0].xyz * half_size.x, m[1].xyz * half_size.y, m[2].xyz * half_size.z);
     for (int i = 0; i < 5; i++) {
-        vec4 plane = i < 4 ? frame.eyes[eye].planes[i] : frame.eyes[eye].forward;
+        vec4 plane = i < 4 ? frame_eye(eye).planes[i] : frame_eye(eye).forward;
         vec3 along = abs(plane.xyz * extent);
         // the margin covers the rounding of positions up to 200 m from the origin
         if (dot(plane.xyz, centre) + plane.w + along.x + along.y + along.z < -1e-4)

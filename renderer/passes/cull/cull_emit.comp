@@ -6,7 +6,8 @@
 layout(local_size_x = SHARED_CULL_GROUP) in;
 layout(constant_id = 0) const int bucket_count = 1;
 
-layout(scalar, binding = 0) readonly buffer Frame { shared_frame frame; };
+layout(scalar, binding = 0) uniform Frame { shared_frame frame; };
+#include "renderer/shared/eye.glsl"
 layout(scalar, binding = 1) readonly buffer Items { shared_item items[]; };
 layout(scalar, binding = 2) readonly buffer Groups { shared_cull_group groups[]; };
 layout(scalar, binding = 3) readonly buffer Visible { uint visible[]; };

@@ -8,7 +8,7 @@ const uint QUERY = 8u;
 
 bool redrawn(shared_item item, uint eye)
 {
-    rectangle r = project(item, frame.eyes[eye].clip_from_world * objects[item.object].world_from_mesh);
+    rectangle r = project(item, frame_eye(eye).clip_from_world * objects[item.object].world_from_mesh);
     vec2 size = vec2(frame.width, frame.height);
     // two pixels more: half of one for the jitter of the projection, the rest for the rounding of floats
     vec2 low = (r.low * 0.5 + 0.5) * size - 2.0, high = (r.high * 0.5 + 0.5) * size + 2.0;

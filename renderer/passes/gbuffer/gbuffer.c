@@ -73,7 +73,7 @@ static bool create_targets(struct gbuffer *g)
 static bool create_layouts(struct gbuffer *g, const struct gpu_buffer *frame)
 {
     const VkShaderStageFlags both = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
-    const struct gpu_binding bindings[] = {{.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, .stages = both},
+    const struct gpu_binding bindings[] = {{.type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, .stages = both},
                                            {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, .stages = both},
                                            {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, .stages = both},
                                            {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, .stages = both}};
@@ -167,7 +167,7 @@ static bool create_mask(struct gbuffer *g, const struct gbuffer_desc *desc)
     const bool keeps = desc->position[0];
     const struct gpu_binding bindings[] = {
         {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, .stages = VK_SHADER_STAGE_FRAGMENT_BIT},
-        {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, .stages = VK_SHADER_STAGE_FRAGMENT_BIT},
+        {.type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, .stages = VK_SHADER_STAGE_FRAGMENT_BIT},
         {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, .stages = VK_SHADER_STAGE_FRAGMENT_BIT, .absent = !keeps}};
     g->mask_set_layout = gpu_set_layout_create(g->gpu, bindings, countof(bindings));
     if (!g->mask_set_layout)

@@ -5,7 +5,7 @@
 #include "renderer/shared/normal.glsl"
 #include "renderer/passes/gbuffer/features.glsl"
 
-layout(scalar, set = 0, binding = 0) readonly buffer Frame { shared_frame frame; };
+layout(scalar, set = 0, binding = 0) uniform Frame { shared_frame frame; };
 layout(scalar, set = 0, binding = 1) readonly buffer Items { shared_item items[]; };
 layout(scalar, set = 0, binding = 2) readonly buffer Objects { shared_object objects[]; };
 layout(scalar, set = 0, binding = 3) readonly buffer Materials { shared_material materials[]; };

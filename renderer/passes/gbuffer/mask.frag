@@ -8,7 +8,7 @@
 // depth instead, and redrawn pixels stay as they are.
 
 layout(set = 0, binding = 0, r8ui) uniform readonly uimage2DArray redraw_map;
-layout(scalar, set = 0, binding = 1) readonly buffer Frame { shared_frame frame; };
+layout(scalar, set = 0, binding = 1) uniform Frame { shared_frame frame; };
 #ifdef KEPT
 layout(set = 0, binding = 2, rgba32f) uniform readonly image2DArray position_image;
 #endif

@@ -10,7 +10,7 @@ bool motion_init(struct motion *m, const struct motion_desc *desc)
                          .height = desc->height,
                          .motion_count = desc->scene->motion_count};
     const struct gpu_binding bindings[] = {
-        {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},                              // frame
+        {.type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},                              // frame
         {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},                              // motions
         {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},                      // depth
         {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, .absent = !desc->id}, // id

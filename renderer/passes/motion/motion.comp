@@ -6,7 +6,8 @@
 
 layout(local_size_x = SHARED_TILE, local_size_y = SHARED_TILE) in;
 
-layout(scalar, binding = 0) readonly buffer Frame { shared_frame frame; };
+layout(scalar, binding = 0) uniform Frame { shared_frame frame; };
+#include "renderer/shared/eye.glsl"
 layout(scalar, binding = 1) readonly buffer Motions { mat4 motions[]; };
 layout(binding = 2) uniform sampler2DArray depth_image;
 #ifdef ID
@@ -23,9 +24,9 @@ void main()
     if (pixel.x >= int(frame.width) || pixel.y >= int(frame.height))
         return;
     uint eye = uint(pixel.z);
-    mat4 world_from_eye = frame.eyes[eye].world_from_eye;
+    mat4 world_from_eye = frame_eye(eye).world_from_eye;
     vec2 place = vec2(pixel.xy) + 0.5 - frame.jitter;
-    vec3 direction = mat3(world_from_eye) * view_ray(frame.eyes[eye], vec2(frame.width, frame.height), place);
+    vec3 direction = mat3(world_from_eye) * view_ray(frame_eye(eye), vec2(frame.width, frame.height), place);
     float depth = texelFetch(depth_image, pixel, 0).x, distance = depth > 0.0 ? frame.near_m / depth : 0.0;
     vec4 position = vec4(direction, -1.0);
     if (depth > 0.0) {

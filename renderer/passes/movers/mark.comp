@@ -7,7 +7,8 @@
 
 layout(local_size_x = SHARED_TILE, local_size_y = SHARED_TILE) in;
 
-layout(scalar, binding = 0) readonly buffer Frame { shared_frame frame; };
+layout(scalar, binding = 0) uniform Frame { shared_frame frame; };
+#include "renderer/shared/eye.glsl"
 layout(scalar, binding = 1) readonly buffer Items { shared_item items[]; };
 layout(scalar, binding = 2) readonly buffer Objects { shared_object objects[]; };
 layout(scalar, binding = 3) readonly buffer Motions { mat4 motions[]; };
@@ -37,7 +38,7 @@ void main()
         return;
     shared_item item = items[moving[index]];
     shared_object object = objects[item.object];
-    mat4 clip = frame.eyes[eye].clip_from_world;
+    mat4 clip = frame_eye(eye).clip_from_world;
     mark(project(item, clip * object.world_from_mesh), eye);
     mark(project(item, clip * motions[push.motion_count + object.moving_id] * object.world_from_mesh), eye);
 }

@@ -10,7 +10,7 @@ struct mark_push {
 };
 
 static const struct gpu_binding mark_bindings[] = {
-    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // frame
+    {.type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}, // frame
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // items
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // objects
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // motions
@@ -19,7 +19,7 @@ static const struct gpu_binding mark_bindings[] = {
 };
 
 static const struct gpu_binding join_bindings[] = {
-    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},         // frame
+    {.type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},         // frame
     {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, // depth
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},          // position
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},          // redraw map

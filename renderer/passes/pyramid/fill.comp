@@ -9,7 +9,8 @@
 
 layout(local_size_x = SHARED_TILE, local_size_y = SHARED_TILE) in;
 
-layout(scalar, binding = 0) readonly buffer Frame { shared_frame frame; };
+layout(scalar, binding = 0) uniform Frame { shared_frame frame; };
+#include "renderer/shared/eye.glsl"
 layout(binding = 1, rgba8) uniform image2DArray colour;
 layout(binding = 2, rgba32f) uniform image2DArray position;
 layout(binding = 3) uniform sampler2DArray pyramid; // mip m - 1 is level m
@@ -23,7 +24,7 @@ layout(push_constant) uniform Push {
 
 float eccentricity_confidence(ivec3 pixel, vec2 place)
 {
-    const shared_eye eye = frame.eyes[pixel.z];
+    const shared_eye eye = frame_eye(uint(pixel.z));
     float ecc = view_eccentricity_deg(eye, view_ray(eye, vec2(frame.width, frame.height), place));
     // c_e = S_1((phi - phi_F) / (phi_0 - phi_F)), section 5.2
     return smoothstep(push.fovea_deg, max(push.periphery_deg, push.fovea_deg + 1e-3), ecc);
@@ -83,7 +84,7 @@ void main()
     float w = imageLoad(position, pixel).w, depth = 0.0, confidence = 1.0;
     vec4 filled = vec4(0.0);
     // c <= c_e, and c_e < epsilon is a matter of the angle alone: most pixels need no more
-    const shared_eye eye = frame.eyes[pixel.z];
+    const shared_eye eye = frame_eye(uint(pixel.z));
     vec3 ray = view_ray(eye, vec2(frame.width, frame.height), vec2(pixel.xy) + 0.5);
     bool redraw = push.epsilon >= 1.0 || (push.epsilon > 0.0 && view_within(eye, ray, push.trusted_cosine));
     if (redraw) {

@@ -15,7 +15,8 @@
 
 layout(local_size_x = SHARED_TILE, local_size_y = SHARED_TILE) in;
 
-layout(scalar, binding = 0) readonly buffer Frame { shared_frame frame; };
+layout(scalar, binding = 0) uniform Frame { shared_frame frame; };
+#include "renderer/shared/eye.glsl"
 #ifdef FIRST
 layout(binding = 1, rgba8) uniform readonly image2DArray colour;
 layout(binding = 2, rgba32f) uniform readonly image2DArray position;
@@ -36,7 +37,7 @@ vec4 load(ivec3 pixel, out float depth)
     vec4 p = imageLoad(position, pixel);
     if (p.w == 0.0)
         return vec4(0.0);
-    depth = kept_depth(frame.eyes[pixel.z], p, frame.near_m);
+    depth = kept_depth(frame_eye(uint(pixel.z)), p, frame.near_m);
     return vec4(imageLoad(colour, pixel).rgb, 1.0);
 #else
     depth = imageLoad(depth_in, pixel).x;

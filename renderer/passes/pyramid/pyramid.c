@@ -10,7 +10,7 @@
 #include <math.h>
 
 static const struct gpu_binding pull_bindings[] = {
-    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // frame
+    {.type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}, // frame
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},  // colour, of the first dispatch
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},  // position
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},  // the level that is read, of the others
@@ -20,7 +20,7 @@ static const struct gpu_binding pull_bindings[] = {
 };
 
 static const struct gpu_binding fill_bindings[] = {
-    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},         // frame
+    {.type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},         // frame
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},          // colour
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},          // position
     {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, // pyramid

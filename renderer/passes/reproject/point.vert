@@ -6,7 +6,8 @@
 
 // One point a source pixel, drawn in their order: of equal depths the first stays, as in splat.comp.
 
-layout(scalar, binding = 0) readonly buffer Frame { shared_frame frame; };
+layout(scalar, binding = 0) uniform Frame { shared_frame frame; };
+#include "renderer/shared/eye.glsl"
 layout(scalar, binding = 1) readonly buffer Motions { mat4 motions[]; };
 layout(binding = 2, rgba32f) uniform readonly image2DArray position_image;
 layout(push_constant) uniform Push { float drop_cosine; uint drop_moving; uint eye; } push;

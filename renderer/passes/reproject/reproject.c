@@ -15,7 +15,7 @@ enum { FRAME, MOTIONS, POSITION, KEYS, SPLAT_BINDINGS };
 
 // One layout for the kernel and, in the vertex shader, the points.
 static const struct gpu_binding splat_bindings[SPLAT_BINDINGS] = {
-    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // frame
+    {.type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}, // frame
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // motions
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},  // position, read
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // keys, for the kernel
@@ -24,7 +24,7 @@ static const struct gpu_binding splat_bindings[SPLAT_BINDINGS] = {
 enum { SOURCE = 7, DEPTH, RESOLVE_BINDINGS };
 
 static const struct gpu_binding resolve_bindings[RESOLVE_BINDINGS] = {
-    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},         // frame
+    {.type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},         // frame
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},         // motions
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},          // position, read
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},         // keys, of the kernel

@@ -7,7 +7,8 @@
 
 layout(local_size_x = SHARED_TILE, local_size_y = SHARED_TILE) in;
 
-layout(scalar, binding = 0) readonly buffer Frame { shared_frame frame; };
+layout(scalar, binding = 0) uniform Frame { shared_frame frame; };
+#include "renderer/shared/eye.glsl"
 layout(scalar, binding = 1) readonly buffer Motions { mat4 motions[]; };
 layout(binding = 2, rgba32f) uniform readonly image2DArray position_from;
 #ifdef POINTS
@@ -52,7 +53,7 @@ float depth_now(vec4 position, int eye)
 {
     if (position.w < 0.0)
         return 0.0;
-    vec4 forward = frame.eyes[eye].forward;
+    vec4 forward = frame_eye(uint(eye)).forward;
     return frame.near_m / (dot(forward.xyz, move_position(position).xyz) + forward.w);
 }
 
@@ -94,6 +95,15 @@ bool shows_through(ivec3 pixel)
 {
     const ivec2 across[4] = ivec2[4](ivec2(1, 0), ivec2(0, 1), ivec2(1, 1), ivec2(1, -1));
     float nearer = max(1.1 * depth_at(pixel), 1e-36);
+    ivec2 rest = min(pixel.xy, ivec2(frame.width, frame.height) - 1 - pixel.xy);
+    if (min(rest.x, rest.y) >= REACH) { // most pixels have nothing nearer on the one side: plain loads tell it soonest
+        float nearest = 0.0;
+        for (int k = 0; k < 4; k++)
+            for (int i = 1; i <= REACH; i++)
+                nearest = max(nearest, depth_at(pixel + ivec3(i * across[k], 0)));
+        if (nearest <= nearer)
+            return false;
+    }
     for (int k = 0; k < 4; k++) {
         int i = next_nearer(pixel, across[k], nearer);
         int j = i > 0 ? next_nearer(pixel, -across[k], nearer) : 0;

@@ -6,7 +6,8 @@ layout(constant_id = 1) const bool has_occlusion = false;
 layout(constant_id = 2) const bool every_light = false; // no light lists: what they must equal
 layout(constant_id = 3) const bool has_shadow = false;
 
-layout(scalar, binding = 0) readonly buffer Frame { shared_frame frame; };
+layout(scalar, binding = 0) uniform Frame { shared_frame frame; };
+#include "renderer/shared/eye.glsl"
 layout(scalar, binding = 1) readonly buffer Lights { shared_light lights[]; };
 layout(binding = 2) uniform sampler2DArray base_image;
 layout(binding = 3) uniform usampler2DArray normal_image;

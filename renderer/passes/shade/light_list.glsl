@@ -42,9 +42,9 @@ bool sphere_meets_tile(vec3 centre, float radius, vec2 low, vec2 high)
 void list_lights(uint first, uint eye, uvec2 corner)
 {
     vec2 size = vec2(frame.width, frame.height);
-    vec2 upper = view_ray(frame.eyes[eye], size, vec2(corner) - frame.jitter).xy;
-    vec2 lower = view_ray(frame.eyes[eye], size, vec2(corner) - frame.jitter + float(SHARED_TILE)).xy;
-    mat4 world_from_eye = frame.eyes[eye].world_from_eye;
+    vec2 upper = view_ray(frame_eye(eye), size, vec2(corner) - frame.jitter).xy;
+    vec2 lower = view_ray(frame_eye(eye), size, vec2(corner) - frame.jitter + float(SHARED_TILE)).xy;
+    mat4 world_from_eye = frame_eye(eye).world_from_eye;
     barrier();
     if (gl_LocalInvocationIndex < light_words)
         light_mask[gl_LocalInvocationIndex] = 0u;

@@ -11,7 +11,7 @@
 enum { COUNTERS = 11, REDRAW_MAP = 12, TILES = 13, BINDINGS };
 
 static const struct gpu_binding all_bindings[BINDINGS] = {
-    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},         // frame
+    {.type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},         // frame
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},         // lights
     {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, // base
     {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, // normal

@@ -10,8 +10,8 @@
 // wanted pixels of the group.
 vec3 shade_pixel(ivec3 pixel, bool wanted, uvec2 corner)
 {
-    vec3 ray = view_ray(frame.eyes[pixel.z], vec2(frame.width, frame.height), vec2(pixel.xy) + 0.5 - frame.jitter);
-    mat4 world_from_eye = frame.eyes[pixel.z].world_from_eye;
+    vec3 ray = view_ray(frame_eye(uint(pixel.z)), vec2(frame.width, frame.height), vec2(pixel.xy) + 0.5 - frame.jitter);
+    mat4 world_from_eye = frame_eye(uint(pixel.z)).world_from_eye;
     vec3 direction = mat3(world_from_eye) * ray;
     float depth = wanted ? texelFetch(depth_image, pixel, 0).x : 0.0;
     float distance = frame.near_m / depth;

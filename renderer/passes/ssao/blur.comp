@@ -9,7 +9,8 @@
 
 layout(local_size_x = SHARED_TILE, local_size_y = SHARED_TILE) in;
 
-layout(scalar, binding = 0) readonly buffer Frame { shared_frame frame; };
+layout(scalar, binding = 0) uniform Frame { shared_frame frame; };
+#include "renderer/shared/eye.glsl"
 layout(binding = 1) uniform sampler2DArray distances;
 layout(binding = 2, r8) uniform readonly image2DArray occlusion;
 layout(binding = 3, r8) uniform writeonly image2DArray blurred;

@@ -9,7 +9,8 @@
 
 layout(local_size_x = SHARED_TILE, local_size_y = SHARED_TILE) in;
 
-layout(scalar, binding = 0) readonly buffer Frame { shared_frame frame; };
+layout(scalar, binding = 0) uniform Frame { shared_frame frame; };
+#include "renderer/shared/eye.glsl"
 layout(binding = 1, r32f) uniform writeonly image2DArray distances;
 #ifdef REDRAW
 layout(binding = 2, rgba32f) uniform readonly image2DArray position_image; // composed
@@ -24,7 +25,7 @@ void main()
         return;
     ivec3 pixel = ivec3(2 * to.xy, to.z);
 #ifdef REDRAW
-    float depth = kept_depth(frame.eyes[to.z], imageLoad(position_image, pixel), frame.near_m);
+    float depth = kept_depth(frame_eye(uint(to.z)), imageLoad(position_image, pixel), frame.near_m);
 #else
     float depth = texelFetch(depth_image, pixel, 0).x;
 #endif

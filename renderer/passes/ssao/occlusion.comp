@@ -11,7 +11,8 @@
 
 layout(local_size_x = SHARED_TILE, local_size_y = SHARED_TILE) in;
 
-layout(scalar, binding = 0) readonly buffer Frame { shared_frame frame; };
+layout(scalar, binding = 0) uniform Frame { shared_frame frame; };
+#include "renderer/shared/eye.glsl"
 layout(binding = 1) uniform sampler2DArray distances;
 layout(binding = 2, r8) uniform writeonly image2DArray occlusion;
 #include "renderer/passes/ssao/half_pixel.glsl"
@@ -27,7 +28,7 @@ const float most_texels = 64.0; // of the radius on the screen; nearer surfaces 
 // View-space point of a texel; the projection's jitter, half a pixel at most, is left out.
 vec3 point_of(ivec3 texel, float distance)
 {
-    return distance * view_ray(frame.eyes[texel.z], vec2(frame.width, frame.height), 2.0 * vec2(texel.xy) + 0.5);
+    return distance * view_ray(frame_eye(uint(texel.z)), vec2(frame.width, frame.height), 2.0 * vec2(texel.xy) + 0.5);
 }
 
 // The surface's change from one texel to the next along an axis, on the flatter side.
@@ -55,7 +56,7 @@ void main()
     vec3 here = point_of(texel, distance);
     vec3 normal = cross(slope(texel, ivec2(0, 1), here, size), slope(texel, ivec2(1, 0), here, size));
     normal *= inversesqrt(max(dot(normal, normal), 1e-20));
-    shared_eye eye = frame.eyes[texel.z];
+    shared_eye eye = frame_eye(uint(texel.z));
     float texels_per_m = 0.5 * float(frame.width) / ((eye.tangents.x + eye.tangents.y) * distance);
     float reach = min(radius_m * texels_per_m, most_texels), sum = 0.0;
     if (reach < 1.0) {

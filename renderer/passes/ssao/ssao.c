@@ -13,6 +13,7 @@
 enum { LIST_GROUP = 64 };
 
 #define BUFFER VK_DESCRIPTOR_TYPE_STORAGE_BUFFER
+#define UNIFORM VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
 #define IMAGE VK_DESCRIPTOR_TYPE_STORAGE_IMAGE
 #define SAMPLED VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER
 
@@ -64,7 +65,7 @@ static bool create_kernel(struct ssao *s, const char *name, struct gpu_code code
 static bool create_distances(struct ssao *s, const struct ssao_desc *desc)
 {
     const bool redraw = listed(s);
-    const struct gpu_binding bindings[] = {{.type = BUFFER},
+    const struct gpu_binding bindings[] = {{.type = UNIFORM},
                                            {.type = IMAGE},
                                            {.type = IMAGE, .absent = !redraw},
                                            {.type = SAMPLED, .absent = redraw}};
@@ -97,7 +98,7 @@ static bool create_list(struct ssao *s, const struct ssao_desc *desc)
 static bool create_occlusion(struct ssao *s, const struct ssao_desc *desc)
 {
     const bool redraw = listed(s);
-    const struct gpu_binding bindings[] = {{.type = BUFFER},
+    const struct gpu_binding bindings[] = {{.type = UNIFORM},
                                            {.type = SAMPLED},
                                            {.type = IMAGE},
                                            {.type = IMAGE},

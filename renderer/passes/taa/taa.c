@@ -11,7 +11,7 @@
 enum { POSITION = 6, REDRAW_MAP, DEPTH, ID, BINDINGS };
 
 static const struct gpu_binding all_bindings[BINDINGS] = {
-    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},         // frame
+    {.type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},         // frame
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},         // motions
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},          // colour
     {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, // history

@@ -8,7 +8,8 @@
 
 layout(local_size_x = SHARED_TILE, local_size_y = SHARED_TILE) in;
 
-layout(scalar, binding = 0) readonly buffer Frame { shared_frame frame; };
+layout(scalar, binding = 0) uniform Frame { shared_frame frame; };
+#include "renderer/shared/eye.glsl"
 layout(scalar, binding = 1) readonly buffer Motions { mat4 motions[]; };
 layout(binding = 2, rgba8) uniform readonly image2DArray colour;
 layout(binding = 3) uniform sampler2DArray history;
@@ -43,8 +44,8 @@ vec3 rgb(vec3 c)
 // The point at a place of the image (pixels) and a reversed depth; as in passes/reproject.
 vec4 point_at(uint eye, vec2 place, float depth, float w)
 {
-    mat4 world_from_eye = frame.eyes[eye].world_from_eye;
-    vec3 direction = mat3(world_from_eye) * view_ray(frame.eyes[eye], vec2(frame.width, frame.height), place);
+    mat4 world_from_eye = frame_eye(eye).world_from_eye;
+    vec3 direction = mat3(world_from_eye) * view_ray(frame_eye(eye), vec2(frame.width, frame.height), place);
     return depth > 0.0 ? vec4(world_from_eye[3].xyz + direction * (frame.near_m / depth), w) : vec4(direction, -1.0);
 }
 
@@ -59,7 +60,7 @@ vec2 history_place(ivec3 pixel)
     if (imageLoad(redraw_map, pixel).x == 0u) {
         // Motion smoothing, section 6.2: not the exact position, but the pixel's centre at its depth. A point that is
         // about to change its pixel is off that centre, and so it meets a history between two pixels.
-        position = point_at(eye, centre, kept_depth(frame.eyes[eye], position, frame.near_m), max(position.w, 1.0));
+        position = point_at(eye, centre, kept_depth(frame_eye(eye), position, frame.near_m), max(position.w, 1.0));
         offset = vec2(0.0);
     }
 #else

@@ -10,7 +10,7 @@
 enum { REDRAW_MAP = 3, TILES = 4, BINDINGS };
 
 static const struct gpu_binding all_bindings[BINDINGS] = {
-    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // frame
+    {.type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}, // frame
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},  // hdr
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},  // target
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},  // redraw map, where there is one

@@ -7,7 +7,7 @@
 
 layout(local_size_x = SHARED_TILE, local_size_y = SHARED_TILE) in;
 
-layout(scalar, binding = 0) readonly buffer Frame { shared_frame frame; };
+layout(scalar, binding = 0) uniform Frame { shared_frame frame; };
 layout(binding = 1, rgba16f) uniform readonly image2DArray hdr;
 layout(binding = 2, rgba8) uniform writeonly image2DArray target;
 #ifdef REDRAW

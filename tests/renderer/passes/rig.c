@@ -44,7 +44,8 @@ bool rig_open(struct rig *rig)
     }
     const VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
     need(rig,
-         gpu_buffer_create(rig->gpu, "frame", sizeof(struct shared_frame), usage, GPU_HOST, &rig->frame) &&
+         gpu_buffer_create(rig->gpu, "frame", sizeof(struct shared_frame),
+                           usage | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, GPU_HOST, &rig->frame) &&
              gpu_buffer_create(rig->gpu, "counters", sizeof(struct shared_counters), usage, GPU_HOST,
                                &rig->counters) &&
              gpu_kernel_create(rig->gpu,

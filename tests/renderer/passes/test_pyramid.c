@@ -1,4 +1,4 @@
-// The pyramid (pull and fill) against the double-precision reference: levels, colours, redraw map, counter.
+// The pyramid (pull and fill) against the double-precision reference: levels, colours, depths, redraw map.
 #include "renderer/passes/pyramid/pyramid.h"
 #include "tests/renderer/passes/fill_reference.h"
 
@@ -19,14 +19,15 @@ struct bed {
     uint32_t width, height;
     size_t count; // pixels of both eyes
     struct gpu_image colour[2], position[2], redraw_map;
-    float (*positions)[4];
+    float (*positions)[4], (*after)[4];
+    uint8_t *forced;       // what the map holds before, where the pass reads it
     uint8_t (*colours)[4]; // before
     uint8_t (*result)[4];  // after
     uint8_t *map;
 };
 
 struct verdict {
-    uint32_t redrawn, kept_holes, undecided, wrong_decisions, wrong_colours;
+    uint32_t redrawn, kept_holes, undecided, wrong_decisions, wrong_colours, wrong_positions;
     double worst_colour; // of 255
 };
 
@@ -41,10 +42,15 @@ static void bed_open(struct bed *b, uint32_t width, uint32_t height)
     }
     b->redraw_map = rig_image(&b->rig, VK_FORMAT_R8_UINT, width, height);
     b->positions = calloc(b->count, sizeof *b->positions);
+    b->after = calloc(b->count, sizeof *b->after);
+    b->forced = calloc(b->count, 1);
     b->colours = calloc(b->count, sizeof *b->colours);
     b->result = calloc(b->count, sizeof *b->result);
     b->map = calloc(b->count, 1);
-    assert_true(b->positions && b->colours && b->result && b->map);
+    assert_true(b->positions && b->after && b->forced && b->colours && b->result && b->map);
+    uint64_t random = width;
+    for (int eye = 0; eye < EYES; eye++)
+        b->view.eyes[eye].pose.orientation = rig_turn(&random, 3);
 }
 
 static void bed_close(struct bed *b)
@@ -55,6 +61,8 @@ static void bed_close(struct bed *b)
     }
     gpu_image_destroy(b->rig.gpu, &b->redraw_map);
     free(b->positions);
+    free(b->after);
+    free(b->forced);
     free(b->colours);
     free(b->result);
     free(b->map);
@@ -70,7 +78,7 @@ static struct pyramid_confidence confidence_of(const struct fill_parameters *q)
                                        .dynamic_decay = (float)q->dynamic_decay};
 }
 
-static struct pyramid make(struct bed *b, const struct fill_parameters *q)
+static struct pyramid make(struct bed *b, const struct fill_parameters *q, bool forced)
 {
     struct pyramid pass;
     const struct pyramid_desc desc = {.gpu = b->rig.gpu,
@@ -80,6 +88,7 @@ static struct pyramid make(struct bed *b, const struct fill_parameters *q)
                                       .colour = {b->colour[0].view, b->colour[1].view},
                                       .position = {b->position[0].view, b->position[1].view},
                                       .redraw_map = b->redraw_map.view,
+                                      .forced = forced,
                                       .confidence = confidence_of(q)};
     assert_true(pyramid_init(&pass, &desc));
     return pass;
@@ -88,7 +97,7 @@ static struct pyramid make(struct bed *b, const struct fill_parameters *q)
 // epsilon 0 gives all levels; the thresholds may change afterwards.
 static struct pyramid make_unlimited(struct bed *b)
 {
-    return make(b, &(struct fill_parameters){.epsilon = 0, .hole_decay = 1});
+    return make(b, &(struct fill_parameters){.epsilon = 0, .hole_decay = 1}, false);
 }
 
 static void use(struct pyramid *pass, const struct fill_parameters *q)
@@ -98,18 +107,20 @@ static void use(struct pyramid *pass, const struct fill_parameters *q)
     pass->confidence.levels = levels;
 }
 
-static void run(struct bed *b, const struct pyramid *pass, uint32_t target)
+// `before`: the redraw map's contents; NULL: nothing that could be read as a map.
+static void run(struct bed *b, const struct pyramid *pass, uint32_t target, const uint8_t *before)
 {
     rig_upload(&b->rig, &b->colour[target], sizeof *b->colours, b->colours);
     rig_upload(&b->rig, &b->position[target], sizeof *b->positions, b->positions);
     memset(b->map, 7, b->count); // every pixel must be written
-    rig_upload(&b->rig, &b->redraw_map, 1, b->map);
+    rig_upload(&b->rig, &b->redraw_map, 1, before ? before : b->map);
     rig_frame(&b->rig, &b->view);
     VkCommandBuffer cmd = rig_begin(&b->rig);
     pyramid_pull(pass, cmd, target);
     pyramid_fill(pass, cmd, target);
     rig_end(&b->rig, cmd);
     rig_download(&b->rig, &b->colour[target], sizeof *b->result, b->result);
+    rig_download(&b->rig, &b->position[target], sizeof *b->after, b->after);
     rig_download(&b->rig, &b->redraw_map, 1, b->map);
     for (size_t i = 0; i < b->count; i++)
         assert_true(b->map[i] <= 1);
@@ -119,10 +130,11 @@ static void judge_pixel(const struct bed *b, size_t i, const struct fill_answer 
                         const struct fill_parameters *q, struct verdict *v)
 {
     const double epsilon = q->epsilon;
-    const bool expected = epsilon >= 1 || a->confidence < epsilon;
+    const bool expected = b->forced[i] || epsilon >= 1 || a->confidence < epsilon;
     // without a ramp between phi_F and phi_0 the rim is as sharp as an angle in floats
     const bool rim = q->periphery_deg - q->fovea_deg < 0.1 && fabs(a->from_fovea_deg) < 2e-3;
-    const bool undecided = epsilon > 0 && epsilon < 1 && (rim || fabs(a->confidence - epsilon) < level_error);
+    const bool undecided =
+        !b->forced[i] && epsilon > 0 && epsilon < 1 && (rim || fabs(a->confidence - epsilon) < level_error);
     v->redrawn += b->map[i];
     v->undecided += undecided;
     v->wrong_decisions += !undecided && b->map[i] != expected;
@@ -136,6 +148,13 @@ static void judge_pixel(const struct bed *b, size_t i, const struct fill_answer 
         v->worst_colour = fmax(v->worst_colour, worst);
         v->wrong_colours += !(worst <= 1) || b->result[i][3] != 255;
     }
+    const float *p = b->after[i];
+    if (a->hole && !b->map[i]) {
+        const bool depth_ok = a->depth == 0 ? p[0] == 0 : fabs((double)p[0] / a->depth - 1) < 1e-5;
+        v->wrong_positions += !depth_ok || p[1] != 0 || p[2] != 0 || p[3] != 0;
+    } else {
+        v->wrong_positions += memcmp(p, b->positions[i], sizeof *b->after) != 0;
+    }
 }
 
 static struct verdict judge(const struct bed *b, const struct fill_parameters *q)
@@ -144,8 +163,8 @@ static struct verdict judge(const struct bed *b, const struct fill_parameters *q
     for (int eye = 0; eye < EYES; eye++) {
         const size_t at = (size_t)eye * b->count / 2;
         const float(*positions)[4] = (const float(*)[4])(b->positions + at);
-        struct fill_pyramid p =
-            fill_build(b->width, b->height, (const uint8_t(*)[4])(b->colours + at), positions);
+        struct fill_pyramid p = fill_build(b->width, b->height, &b->view.eyes[eye],
+                                           (const uint8_t(*)[4])(b->colours + at), positions);
         for (uint32_t i = 0; i < b->count / 2; i++) {
             struct fill_answer a = fill_ask(&p, &b->view.eyes[eye], q, positions, i % b->width, i / b->width);
             judge_pixel(b, at + i, &a, q, &v);
@@ -186,7 +205,13 @@ static void paint(struct bed *b, enum holes holes, uint64_t seed)
                              : 2.f + (float)rig_below(&random, 9) + (float)(1 + rig_below(&random, 12)) / 64;
         if (is_hole(holes, &random, x, y))
             w = 0;
-        b->positions[i][3] = w;
+        const struct rig_eye *e = &b->view.eyes[i / (b->count / 2)];
+        const struct dvec3 ray = dquat_rotate(
+            e->pose.orientation, viewing_pixel_direction(&e->fov, b->width, b->height, x + 0.5, y + 0.5));
+        const struct dvec3 at =
+            dvec3_add(e->pose.position, dvec3_scale(ray, exp(rig_uniform(&random, log(0.04), log(100)))));
+        const float position[4] = {(float)at.x, (float)at.y, (float)at.z, w};
+        memcpy(b->positions[i], position, sizeof position);
         for (int c = 0; c < 3; c++) {
             const uint64_t base = noise == 256 ? 0 : (2u * x + 3u * y * (unsigned)(c + 1)) % 216;
             b->colours[i][c] = w == 0 ? 0 : (uint8_t)(base + rig_below(&random, noise));
@@ -233,18 +258,24 @@ static void any_image_agrees_with_the_reference(void **state)
     for (size_t s = 0; s < countof(sizes); s++) {
         struct bed b;
         bed_open(&b, sizes[s][0], sizes[s][1]);
-        struct pyramid unlimited = make_unlimited(&b);
+        struct pyramid unlimited = make_unlimited(&b),
+                       forced = make(&b, &(struct fill_parameters){.epsilon = 0, .hole_decay = 1}, true);
         for (uint64_t seed = 0; seed < 8 * HOLES; seed++) {
             struct fill_parameters q;
+            const bool force = seed / HOLES % 2;
             paint(&b, (enum holes)(seed % HOLES), 1000 * s + seed);
             draw_parameters(&b, &q, seed / HOLES + 8 * seed + s);
-            use(&unlimited, &q);
-            run(&b, &unlimited, (uint32_t)seed % 2);
+            use(force ? &forced : &unlimited, &q);
+            for (size_t i = 0; i < b.count; i++)
+                b.forced[i] = force && (i * 2654435761u + seed) % 7 == 0;
+            run(&b, force ? &forced : &unlimited, (uint32_t)seed % 2, force ? b.forced : NULL);
             struct verdict v = judge(&b, &q);
-            if (v.wrong_decisions || v.wrong_colours)
-                fail_msg("%u x %u, seed %u, epsilon %g, A %g, D %g: %u decisions and %u colours are wrong (%g)",
-                         b.width, b.height, (unsigned)seed, q.epsilon, q.hole_decay, q.dynamic_decay,
-                         v.wrong_decisions, v.wrong_colours, v.worst_colour);
+            if (v.wrong_decisions || v.wrong_colours || v.wrong_positions)
+                fail_msg(
+                    "%u x %u, seed %u, epsilon %g, A %g, D %g: %u decisions, %u colours (%g) and %u positions "
+                    "are wrong",
+                    b.width, b.height, (unsigned)seed, q.epsilon, q.hole_decay, q.dynamic_decay,
+                    v.wrong_decisions, v.wrong_colours, v.worst_colour, v.wrong_positions);
             sum.redrawn += v.redrawn;
             sum.kept_holes += v.kept_holes;
             sum.undecided += v.undecided;
@@ -252,6 +283,7 @@ static void any_image_agrees_with_the_reference(void **state)
             pixels += b.count;
         }
         pyramid_finish(&unlimited);
+        pyramid_finish(&forced);
         bed_close(&b);
     }
     print_message("%zu pixels, %u redrawn, %u filled, %u too close to call; colours within %.3f of 255\n",
@@ -267,18 +299,21 @@ static void every_level_is_the_mean_and_contrast_of_its_inputs(void **state)
     look(&b, 0, 0);
     struct pyramid pass = make_unlimited(&b);
     float(*level)[4] = malloc(b.count * sizeof *level * 4);
-    double worst = 0;
+    float(*depths)[4] = malloc(b.count * sizeof *depths * 4);
+    double worst = 0, worst_depth = 0;
     for (uint64_t seed = 0; seed < 2 * HOLES; seed++) {
         paint(&b, (enum holes)(seed % HOLES), seed);
-        run(&b, &pass, 0);
+        run(&b, &pass, 0, NULL);
         for (uint32_t eye = 0; eye < EYES; eye++) {
             const size_t at = eye * b.count / 2;
-            struct fill_pyramid p = fill_build(b.width, b.height, (const uint8_t(*)[4])(b.colours + at),
-                                               (const float(*)[4])(b.positions + at));
+            struct fill_pyramid p =
+                fill_build(b.width, b.height, &b.view.eyes[eye], (const uint8_t(*)[4])(b.colours + at),
+                           (const float(*)[4])(b.positions + at));
             assert_int_equal(p.level_count, pass.confidence.levels);
             for (uint32_t m = 1; m <= p.level_count; m++) {
                 const uint32_t width = pass.image.width >> (m - 1), height = pass.image.height >> (m - 1);
                 rig_read_level(&b.rig, &pass.image, m - 1, &level[0][0]);
+                rig_read_level(&b.rig, &pass.depth, m - 1, &depths[0][0]);
                 for (uint32_t i = 0; i < width * height; i++) {
                     const uint32_t x = i % width, y = i / width;
                     const bool inside = x < p.levels[m].width && y < p.levels[m].height;
@@ -289,13 +324,23 @@ static void every_level_is_the_mean_and_contrast_of_its_inputs(void **state)
                         assert_true(error < level_error);
                         worst = fmax(worst, error);
                     }
+                    const float alpha = level[eye * width * height + i][3]; // nothing, or c_c
+                    assert_true(alpha == 0 || (alpha >= 0.5f && alpha <= 1));
+                    const double depth = (double)depths[eye * width * height + i][0];
+                    if (!expected || expected[4] == 0) {
+                        assert_true(depth == 0);
+                        continue;
+                    }
+                    worst_depth = fmax(worst_depth, fabs(depth / expected[4] - 1));
                 }
             }
             fill_free(&p);
         }
     }
-    print_message("levels within %.1e\n", worst);
+    print_message("levels within %.1e, depths within %.1e of themselves\n", worst, worst_depth);
+    assert_true(worst_depth < 1e-5);
     free(level);
+    free(depths);
     pyramid_finish(&pass);
     bed_close(&b);
 }
@@ -313,7 +358,7 @@ static void the_limit_of_levels_changes_nothing(void **state)
     uint32_t kept = 0, shorter = 0, off = 0;
     for (size_t i = 0; i < countof(cases); i++) {
         const struct fill_parameters q = {cases[i][0], 10, 30, cases[i][1], 0.75};
-        struct pyramid limited = make(&b, &q);
+        struct pyramid limited = make(&b, &q, false);
         shorter += limited.confidence.levels < unlimited.confidence.levels;
         // the first level left out is worth less than epsilon, the last kept one is not (level 1 always stays)
         const double last = pow(q.hole_decay, limited.confidence.levels);
@@ -322,10 +367,10 @@ static void the_limit_of_levels_changes_nothing(void **state)
             paint(&b, (enum holes)(seed % HOLES), 50 * i + seed);
             look(&b, seed < HOLES ? 30 : -90, 10);
             use(&unlimited, &q);
-            run(&b, &unlimited, 0);
+            run(&b, &unlimited, 0, NULL);
             memcpy(map, b.map, b.count);
             memcpy(result, b.result, b.count * sizeof *result);
-            run(&b, &limited, 0);
+            run(&b, &limited, 0, NULL);
             assert_memory_equal(map, b.map, b.count);
             for (size_t k = 0; k < b.count; k++) {
                 kept += !map[k] && b.positions[k][3] == 0;
@@ -349,7 +394,7 @@ static uint32_t redrawn_with(struct bed *b, struct pyramid *pass, const struct f
 {
     uint32_t sum = 0;
     use(pass, q);
-    run(b, pass, 1);
+    run(b, pass, 1, NULL);
     for (size_t i = 0; i < b->count; i++)
         sum += b->map[i];
     return sum;
@@ -387,6 +432,75 @@ static void the_ends_of_epsilon_and_no_gaze(void **state)
     bed_close(&b);
 }
 
+// Surfaces are red, the background is blue: a hole filled from a block of pixels with any surface in it has no
+// blue, and one filled from the background alone has no red.
+static void the_background_does_not_bleed(void **state)
+{
+    (void)state;
+    struct bed b;
+    bed_open(&b, 70, 47);
+    struct pyramid pass = make_unlimited(&b);
+    uint32_t beside_surface = 0, background = 0;
+    for (uint64_t seed = 0; seed < 4 * HOLES; seed++) {
+        uint64_t random = seed;
+        paint(&b, (enum holes)(seed % HOLES), seed);
+        look(&b, 0, 0);
+        for (size_t i = 0; i < b.count; i++) {
+            const uint8_t shade = (uint8_t)(64 + rig_below(&random, 190));
+            const bool surface = b.positions[i][3] > 0;
+            memcpy(b.colours[i], (const uint8_t[]){surface ? shade : 0, 0, surface ? 0 : shade, 255}, 4);
+        }
+        run(&b, &pass, 0, NULL); // epsilon 0: every hole is kept
+        for (size_t i = 0; i < b.count; i++) {
+            if (b.positions[i][3] != 0)
+                continue;
+            const size_t eye = i / (b.count / 2) * (b.count / 2);
+            const uint32_t x = (uint32_t)(i - eye) % b.width, y = (uint32_t)(i - eye) / b.width;
+            bool any = false, surface = false;
+            for (uint32_t m = 1; m < 8 && !any; m++) {
+                for (uint32_t v = y >> m << m; v < ((y >> m) + 1) << m && v < b.height; v++) {
+                    for (uint32_t u = x >> m << m; u < ((x >> m) + 1) << m && u < b.width; u++) {
+                        const float w = b.positions[eye + v * b.width + u][3];
+                        any |= w != 0;
+                        surface |= w > 0;
+                    }
+                }
+            }
+            if (!any)
+                continue;
+            beside_surface += surface;
+            background += !surface;
+            assert_int_equal(b.result[i][surface ? 2 : 0], 0);
+            assert_true(b.result[i][surface ? 0 : 2] >= 63);
+            assert_true((b.after[i][0] > 0) == surface);
+        }
+    }
+    print_message("%u holes filled beside surfaces, %u from the background alone\n", beside_surface,
+                  background);
+    assert_true(beside_surface > 10000 && background > 1000);
+    pyramid_finish(&pass);
+    bed_close(&b);
+}
+
+// What was not filled loses nothing by contrast or size: m = 0. Whatever its colours, a pixel that was kept and
+// is at rest has c = c_e.
+static void only_holes_lose_by_contrast_and_size(void **state)
+{
+    (void)state;
+    struct bed b;
+    bed_open(&b, 40, 36);
+    struct pyramid pass = make_unlimited(&b);
+    const struct fill_parameters q = {0.999, 10, 30, 0.6, 0.75};
+    paint(&b, SPECKLED, 3); // noise of full contrast
+    look(&b, 180, 0);
+    use(&pass, &q);
+    run(&b, &pass, 0, NULL);
+    for (size_t i = 0; i < b.count; i++)
+        assert_int_equal(b.map[i], b.positions[i][3] == 0 || b.positions[i][3] >= 2);
+    pyramid_finish(&pass);
+    bed_close(&b);
+}
+
 int main(void)
 {
     struct rig probe;
@@ -398,6 +512,8 @@ int main(void)
         cmocka_unit_test(every_level_is_the_mean_and_contrast_of_its_inputs),
         cmocka_unit_test(the_limit_of_levels_changes_nothing),
         cmocka_unit_test(the_ends_of_epsilon_and_no_gaze),
+        cmocka_unit_test(the_background_does_not_bleed),
+        cmocka_unit_test(only_holes_lose_by_contrast_and_size),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
