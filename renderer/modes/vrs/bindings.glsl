@@ -4,7 +4,8 @@
 layout(constant_id = 9) const bool has_occlusion_image = false;
 layout(constant_id = 10) const bool has_shadow = false;
 
-layout(scalar, set = 0, binding = 0) readonly buffer Frame { shared_frame frame; };
+layout(scalar, set = 0, binding = 0) uniform Frame { shared_frame frame; };
+#include "renderer/shared/eye.glsl"
 layout(scalar, set = 0, binding = 4) readonly buffer Lights { shared_light lights[]; };
 layout(scalar, set = 0, binding = 5) buffer Counters { shared_counters counters; };
 layout(set = 0, binding = 6) uniform sampler2DArray occlusion_image;
@@ -20,8 +21,8 @@ layout(location = 0) out vec4 out_hdr;
 vec3 fragment_direction()
 {
     vec2 size = vec2(frame.width, frame.height);
-    return mat3(frame.eyes[push.eye].world_from_eye) *
-           view_ray(frame.eyes[push.eye], size, gl_FragCoord.xy - frame.jitter);
+    return mat3(frame_eye(push.eye).world_from_eye) *
+           view_ray(frame_eye(push.eye), size, gl_FragCoord.xy - frame.jitter);
 }
 
 void write_radiance(vec3 radiance)

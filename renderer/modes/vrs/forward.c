@@ -12,7 +12,7 @@ enum { CONSTANTS = SCENE_GPU_FEATURES + 2 };
 static const VkFormat hdr_format = VK_FORMAT_R16G16B16A16_SFLOAT;
 
 static const struct gpu_binding rate_bindings[] = {
-    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // frame
+    {.type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}, // frame
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},  // rates
 };
 
@@ -69,9 +69,16 @@ static bool create_layouts(struct forward *f, const struct mode_setup *setup, co
     const VkDescriptorType buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     const VkDescriptorType sampled = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
     const struct gpu_binding bindings[] = {
-        {buffer, both, false},  {buffer, both, false},  {buffer, both, false},
-        {buffer, both, false},  {buffer, both, false},  {buffer, both, false},
-        {sampled, both, false}, {sampled, both, false}, {sampled, both, false}};
+        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, both, false}, // frame
+        {buffer, both, false},                            // items
+        {buffer, both, false},                            // objects
+        {buffer, both, false},                            // materials
+        {buffer, both, false},                            // lights
+        {buffer, both, false},                            // counters
+        {sampled, both, false},                           // occlusion
+        {sampled, both, false},                           // its distances
+        {sampled, both, false},                           // sun shadow
+    };
     const struct gpu_resource depth = {.view = d->gbuffer.depth.view,
                                        .sampler = f->sampler,
                                        .layout = VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL};

@@ -8,7 +8,8 @@
 
 layout(local_size_x = SHARED_TILE, local_size_y = SHARED_TILE) in;
 
-layout(scalar, binding = 0) readonly buffer Frame { shared_frame frame; };
+layout(scalar, binding = 0) uniform Frame { shared_frame frame; };
+#include "renderer/shared/eye.glsl"
 layout(binding = 1, r8ui) uniform writeonly uimage2DArray rates;
 layout(push_constant) uniform Push {
     float inner_deg;
@@ -24,8 +25,8 @@ void main()
     if (any(greaterThanEqual(at.xy, imageSize(rates).xy)))
         return;
     vec2 centre = (vec2(at.xy) + 0.5) * float(push.texel);
-    float off = view_eccentricity_deg(frame.eyes[at.z],
-                                      view_ray(frame.eyes[at.z], vec2(frame.width, frame.height), centre));
+    float off = view_eccentricity_deg(frame_eye(uint(at.z)),
+                                      view_ray(frame_eye(uint(at.z)), vec2(frame.width, frame.height), centre));
     uint rate = off > push.outer_deg ? push.outermost : off > push.inner_deg ? push.middle : 0u; // 0: every pixel
     imageStore(rates, at, uvec4(rate));
 }
