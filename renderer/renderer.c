@@ -68,6 +68,7 @@ struct renderer *renderer_create(const struct renderer_desc *desc)
     r->gpu = gpu_create(&(struct gpu_desc){.log = {relay, r},
                                            .device = desc->device,
                                            .validation = desc->validation,
+                                           .anisotropy = desc->anisotropy,
                                            .create_surface = desc->create_surface,
                                            .surface_user = desc->surface_user,
                                            .instance_extensions = desc->instance_extensions,
@@ -132,6 +133,18 @@ void renderer_scene_destroy(struct renderer_scene *scene)
     free(scene);
 }
 
+static void explain_textures(struct renderer_option *o)
+{
+    const struct scene *scene = o->scene->gpu->scene;
+    const double anisotropy = (double)o->renderer->gpu->anisotropy;
+    if (scene->texture_count && anisotropy > 1)
+        mode_explain(&o->explanation, 0, "textures are filtered anisotropically, %g to 1", anisotropy);
+    else if (scene->texture_count)
+        mode_explain(
+            &o->explanation, 0,
+            "textures are filtered isotropically, since the device is a software driver or 1 was asked for");
+}
+
 static void explain_shadow(struct renderer_option *o)
 {
     const struct shadow *s = &o->scene->shadow;
@@ -172,6 +185,7 @@ struct renderer_option *renderer_option_create(struct renderer *r, struct render
                                      .counters = &o->counters,
                                      .explanation = &o->explanation};
     explain_shadow(o);
+    explain_textures(o);
     if (gpu_buffer_create(r->gpu, "frame constants", sizeof(struct shared_frame),
                           usage | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, GPU_HOST, &o->constants) &&
         gpu_buffer_create(r->gpu, "counters", sizeof(struct shared_counters), usage, GPU_HOST, &o->counters) &&

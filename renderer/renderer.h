@@ -31,6 +31,7 @@ struct renderer_desc {
     const char *device;     // part of a device's name; NULL: the best one that has what is needed
     uint32_t width, height; // per eye, pixels, 16..16384
     bool validation;        // load the validation layer; its messages are logged and counted
+    float anisotropy;       // of texture filtering, 1: none; 0: 8 on a GPU, none on a software driver
     bool pass_times;        // one submission per pass, for true per-pass times on software drivers
     // A surface to present to. NULL: headless. create returns a VkResult; instance is a VkInstance and
     // out_surface a VkSurfaceKHR *.

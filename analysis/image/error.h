@@ -9,24 +9,8 @@
 #ifndef ANALYSIS_IMAGE_ERROR_H
 #define ANALYSIS_IMAGE_ERROR_H
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
-struct image_pixels {
-    const uint8_t *data; // borrowed; rows from the top
-    uint32_t width, height;
-    uint32_t channels; // 3 (RGB) or 4 (RGBA)
-    size_t row_bytes;  // 0: width * channels
-};
-
-// How one image was seen: its frustum by the tangents of the half angles, each positive away from the axis (the
-// fields of struct viewing_fov), and the gaze in that eye's frame, degrees, right and up positive. A gaze that
-// is not finite means that there was none: every pixel then counts as foveal, weight 1.
-struct image_view {
-    double tan_left, tan_right, tan_down, tan_up;
-    double gaze_x_deg, gaze_y_deg;
-};
+#include "analysis/image/rings.h"
+#include "analysis/image/view.h"
 
 // Zero is the empty sum. Private but for copying.
 struct image_error_sum {
@@ -58,8 +42,15 @@ struct image_error image_error_result(const struct image_error_sum *sum);
 struct image_error image_error_pair(const struct image_pixels *test, const struct image_pixels *reference,
                                     const struct image_view *view);
 
-// Angle between the gaze and the direction through a point of the image, degrees; pixel centres are at +0.5.
-double image_eccentricity_deg(const struct image_view *view, uint32_t width, uint32_t height, double x,
-                              double y);
+// The same over the rings of eccentricity: region[r] of each ring, region[IMAGE_WHOLE] of the whole image, and
+// weights from the rings' map, so that a frame costs no trigonometry.
+struct image_error_rings {
+    struct image_error_sum region[IMAGE_REGIONS];
+};
+
+// False, with the sums untouched, where image_error_add() would refuse, or for rings of another size. Read
+// image_error_result(&sums->region[r]); a ring without pixels is all NaN.
+bool image_error_rings_add(struct image_error_rings *sums, const struct image_pixels *test,
+                           const struct image_pixels *reference, const struct image_rings *rings);
 
 #endif

@@ -26,6 +26,7 @@ struct request {
     struct mode_choice choice;
     struct mode_choice against; // mode NULL: none
     struct renderer_settings settings;
+    double anisotropy; // 0: what suits the device
     const char *scene;
     const char *out; // NULL: no pictures
     const char *device;
@@ -44,6 +45,7 @@ enum {
     OPTION_GAZE,
     OPTION_FOV,
     OPTION_START,
+    OPTION_ANISOTROPY,
     OPTION_STILL,
     OPTION_SSAO,
     OPTION_TAA,
@@ -70,6 +72,8 @@ static const struct option_spec specs[] = {
     [OPTION_START] = {"start", "S", "where on the path to begin, seconds (0)"},
     [OPTION_SSAO] = {"ssao", NULL, "with ambient occlusion"},
     [OPTION_TAA] = {"taa", NULL, "with temporal antialiasing"},
+    [OPTION_ANISOTROPY] = {"anisotropy", "N",
+                           "of texture filtering, 1 to 16 (8 on a GPU, 1 on a software driver)"},
     [OPTION_STILL] = {"still", NULL, "keep the camera where it starts"},
     [OPTION_REST] = {"rest", NULL, "keep moving objects at rest"},
     [OPTION_ALL] = {"all", NULL, "write every frame, not only the last"},
@@ -91,6 +95,8 @@ static const char *wrong_value(int option, const char *value, struct request *r)
         return walk_gaze_read(value, &r->walk.gaze) ? NULL : "centre, script or X,Y in degrees";
     case OPTION_FOV:
         return options_double(value, 1, 170, &r->walk.fov_deg) ? NULL : "a number of degrees from 1 to 170";
+    case OPTION_ANISOTROPY:
+        return options_double(value, 1, 16, &r->anisotropy) ? NULL : "a number from 1 to 16";
     default:
         return options_double(value, 0, 1e6, &r->walk.start_s) ? NULL : "a number of seconds from 0 to 1000000";
     }
@@ -280,6 +286,7 @@ static bool render(const struct request *r, const struct scene *scene)
                                        .width = r->walk.width,
                                        .height = r->walk.height,
                                        .validation = getenv("FOVSTUDY_VALIDATION") != NULL,
+                                       .anisotropy = (float)r->anisotropy,
                                        .pass_times = r->times};
     struct renderer *renderer = renderer_create(&desc);
     struct renderer_scene *uploaded = renderer ? renderer_scene_create(renderer, scene) : NULL;

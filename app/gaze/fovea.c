@@ -37,3 +37,10 @@ void fovea_at(const struct fovea *fovea, int64_t now_ns, struct fovea_use *out)
     out->age_ns = now_ns - newest_ns;
     out->lost = out->age_ns > FOVEA_HOLD_NS;
 }
+
+bool fovea_returned(bool *was_lost, const struct fovea_use *use)
+{
+    const bool returned = *was_lost && !use->lost;
+    *was_lost = use->lost;
+    return returned;
+}

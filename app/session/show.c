@@ -157,9 +157,7 @@ static bool draw_option(struct show *show, const struct machine_view *view, cons
     struct frame frame = stage_frame(show->desc->stage, view, show->number, &use, &row->head_pose);
     struct renderer_option *option = stage_option(show->desc->stage, view->slot);
     memset(&stats, 0, sizeof stats);
-    // held in place for longer than a blink, the fovea was where nobody looked (fovea.h)
-    frame.gaze_returned = show->gaze_lost && source == STORE_FOVEA_GAZE;
-    show->gaze_lost = source == STORE_FOVEA_LOST;
+    frame.gaze_returned = source != STORE_FOVEA_FIXED && fovea_returned(&show->gaze_lost, &use);
     if (!option || !renderer_draw(option, &frame, &stats)) {
         snprintf(error, error_size, "the GPU could not draw frame %llu", (unsigned long long)show->number);
         return false;

@@ -25,6 +25,7 @@ struct gpu_desc {
     struct gpu_log log;
     const char *device; // part of the name; NULL: best
     bool validation;
+    float anisotropy; // of textures; 0: what suits the device
     int (*create_surface)(void *user, void *instance, void *out_surface);
     void *surface_user;
     const char *const *instance_extensions;
@@ -48,6 +49,7 @@ struct gpu {
     VkPhysicalDeviceMemoryProperties memory;
     bool int64_atomics; // 64-bit atomics on storage buffers
     struct gpu_shading_rate shading_rate;
+    float anisotropy; // of textures, 1: none
     VkDevice device;
     VkQueue queue;
     uint32_t queue_family;

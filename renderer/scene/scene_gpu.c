@@ -5,10 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-// No anisotropic filtering: the software driver of Mesa 22.3 does not come back from it (tried at 8,
-// 2026-11-22).
-static const float max_anisotropy = 1;
-
 static VkSamplerAddressMode address_mode(enum scene_wrap wrap)
 {
     switch (wrap) {
@@ -52,7 +48,7 @@ static bool create_textures(struct scene_gpu *s)
             return false;
         s->samplers[i] =
             gpu_sampler_create(s->gpu, VK_FILTER_LINEAR, t->nearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR,
-                               address_mode(t->wrap_u), address_mode(t->wrap_v), max_anisotropy);
+                               address_mode(t->wrap_u), address_mode(t->wrap_v), s->gpu->anisotropy);
         if (!s->samplers[i])
             return false;
     }

@@ -208,6 +208,31 @@ static bool read_cursor(void *user, double *out_x, double *out_y)
     return cursor->over;
 }
 
+// Frames 10 ms apart; the gaze is away for 400 ms, then for 600 ms. The first time there is none yet.
+static void a_gaze_that_was_lost_comes_back_once(void **state)
+{
+    (void)state;
+    struct fovea fovea = {0};
+    bool was_lost = false;
+    int returns = 0;
+    int64_t last_ns = -1;
+    for (int64_t now_ns = 0; now_ns < 3000000000; now_ns += 10000000) {
+        const bool away = now_ns < 50000000 || (now_ns > 1000000000 && now_ns < 1400000000) ||
+                          (now_ns > 2000000000 && now_ns < 2600000000);
+        struct gaze_sample sample = {
+            .host_ns = now_ns, .eye = GAZE_BOTH, .x_deg = 1, .y_deg = 1, .valid = !away};
+        struct fovea_use use;
+        fovea_sample(&fovea, &sample, 1);
+        fovea_at(&fovea, now_ns, &use);
+        if (fovea_returned(&was_lost, &use)) {
+            returns++;
+            last_ns = now_ns;
+        }
+    }
+    assert_int_equal(returns, 2);
+    assert_int_equal(last_ns, 2600000000);
+}
+
 static void the_mouse_points_through_the_projection(void **state)
 {
     (void)state;
@@ -252,6 +277,7 @@ int main(void)
         cmocka_unit_test(samples_do_not_depend_on_polling),
         cmocka_unit_test(blinks_last_100_to_300_ms_and_are_invalid),
         cmocka_unit_test(the_fovea_holds_through_a_blink_then_is_lost),
+        cmocka_unit_test(a_gaze_that_was_lost_comes_back_once),
         cmocka_unit_test(the_mouse_points_through_the_projection),
         cmocka_unit_test(wrong_sources_get_a_sentence),
     };

@@ -104,6 +104,25 @@ static void switches_take_half_a_second(void **state)
         "0");
 }
 
+// An option that comes back draws everything once, in the first frame in which it can be seen at all.
+static void full_redraws_hide_in_fades(void **state)
+{
+    (void)state;
+    expect(
+        "SELECT count(*) FROM event e WHERE kind = 'full_redraw' AND NOT EXISTS (SELECT 1 FROM frame f WHERE "
+        "f.start_ns = e.at_ns AND f.phase = 'fade' AND f.fade_level > 0)",
+        "0");
+    expect("SELECT count(*) FROM exposure x JOIN trial t ON t.id = x.trial_id JOIN condition c ON c.id = CASE "
+           "x.option "
+           "WHEN 'a' THEN option_a ELSE option_b END WHERE c.mode = 'time_warped' AND (SELECT count(*) FROM "
+           "event e "
+           "WHERE e.kind = 'full_redraw' AND e.at_ns BETWEEN x.start_ns AND x.end_ns) <> 1",
+           "0");
+    expect("SELECT count(*) FROM event WHERE kind = 'full_redraw' AND json_extract(detail, '$.cause') NOT IN "
+           "('first', 'cut', 'gap')",
+           "0");
+}
+
 static void every_frame_has_its_row(void **state)
 {
     (void)state;
@@ -275,6 +294,7 @@ int main(void)
         cmocka_unit_test(every_trial_is_answered_in_order),
         cmocka_unit_test(choices_follow_both_options),
         cmocka_unit_test(switches_take_half_a_second),
+        cmocka_unit_test(full_redraws_hide_in_fades),
         cmocka_unit_test(every_frame_has_its_row),
         cmocka_unit_test(the_fovea_follows_the_gaze),
         cmocka_unit_test(errors_were_measured_against_the_reference),

@@ -96,12 +96,21 @@ bool shows_through(ivec3 pixel)
     const ivec2 across[4] = ivec2[4](ivec2(1, 0), ivec2(0, 1), ivec2(1, 1), ivec2(1, -1));
     float nearer = max(1.1 * depth_at(pixel), 1e-36);
     ivec2 rest = min(pixel.xy, ivec2(frame.width, frame.height) - 1 - pixel.xy);
-    if (min(rest.x, rest.y) >= REACH) { // most pixels have nothing nearer on the one side: plain loads tell it soonest
-        float nearest = 0.0;
+    if (min(rest.x, rest.y) >= REACH) { // plain loads tell soonest that most pixels have nothing nearer on both sides
+        float nearest[4] = float[4](0.0, 0.0, 0.0, 0.0);
         for (int k = 0; k < 4; k++)
             for (int i = 1; i <= REACH; i++)
-                nearest = max(nearest, depth_at(pixel + ivec3(i * across[k], 0)));
-        if (nearest <= nearer)
+                nearest[k] = max(nearest[k], depth_at(pixel + ivec3(i * across[k], 0)));
+        if (max(max(nearest[0], nearest[1]), max(nearest[2], nearest[3])) <= nearer)
+            return false;
+        bool pair = false;
+        for (int k = 0; k < 4; k++) {
+            float other = 0.0;
+            for (int i = 1; i <= REACH; i++)
+                other = max(other, depth_at(pixel - ivec3(i * across[k], 0)));
+            pair = pair || min(nearest[k], other) > nearer;
+        }
+        if (!pair)
             return false;
     }
     for (int k = 0; k < 4; k++) {

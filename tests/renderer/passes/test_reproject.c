@@ -302,6 +302,9 @@ static void only_what_is_in_front_lands(void **state)
         {{-0.2, 0.3, -1}, 0, false},     // a filled hole
         {{-0.2, -0.3, 1e30}, 1, false},  //
         {{-1e30, 1e30, -1e30}, 1, true}, // 45 deg left and up
+        {{-INFINITY, 1, -1}, 1, false},  // at infinity
+        {{1, 1, -INFINITY}, 1, false},   //
+        {{NAN, 1, -1}, 1, false},        // nowhere
     };
     uint32_t landed = 0, expected = 0;
     for (size_t i = 0; i < countof(points); i++) {
@@ -396,6 +399,78 @@ static void an_impossible_motion_loses_its_object_only(void **state)
         if (v.wrong)
             fail_msg("a motion of %g: %u pixels are wrong", bad[i], v.wrong);
     }
+    bed_close(&b);
+}
+
+// With 100 deg of view nothing that was seen is still in sight, unless the turn is about the axis of sight.
+static void a_half_turn_leaves_nothing(void **state)
+{
+    (void)state;
+    struct bed b;
+    bed_open(&b, 45, 36);
+    const struct rig_view before = rig_view_default(b.width, b.height);
+    for (uint64_t seed = 0; seed < 3; seed++) {
+        scatter(&b, &before, 80 + seed);
+        for (size_t i = 0; i < 2 * count_of(&b); i++) // objects may come round
+            b.warp.positions[i][3] = fminf(b.warp.positions[i][3], 1);
+        b.warp.view = before;
+        for (int eye = 0; eye < EYES; eye++)
+            b.warp.view.eyes[eye].pose.orientation =
+                seed == 2 ? (struct dquat){0, 0, 1, 0} : (struct dquat){seed == 1, seed == 0, 0, 0};
+        run(&b);
+        const struct warp_verdict v = judge(&b);
+        assert_int_equal(v.wrong, 0);
+        assert_true(seed == 2 ? v.covered > v.pixels / 4 : v.covered == 0);
+    }
+    bed_close(&b);
+}
+
+// Gaze ahead, in a corner, outside the image, at right angles, beyond, behind, none: within drop_deg of it, and
+// nowhere else, nothing lands.
+static void the_fovea_is_dropped_wherever_it_is(void **state)
+{
+    (void)state;
+    static const double gazes[][2] = {{0, 0},  {49, 49},   {-80, 10}, {90, 0},
+                                      {0, 90}, {120, -20}, {180, 0},  {(double)NAN, 0}};
+    static const double drops[] = {0, 10, 45, 90};
+    struct bed b;
+    struct warp_verdict sum = {0};
+    bed_open(&b, 33, 30);
+    scatter(&b, &b.warp.view, 90);
+    for (size_t g = 0; g < countof(gazes); g++) {
+        for (size_t d = 0; d < countof(drops); d++) {
+            for (int eye = 0; eye < EYES; eye++) {
+                b.warp.view.eyes[eye].gaze_x_deg = gazes[g][0];
+                b.warp.view.eyes[eye].gaze_y_deg = gazes[g][1];
+            }
+            b.warp.drop_deg = drops[d];
+            run(&b);
+            const struct warp_verdict v = judge(&b);
+            assert_int_equal(v.wrong, 0);
+            assert_true(!isnan(gazes[g][0]) || drops[d] == 0 || v.covered == 0); // all is fovea
+            assert_true(gazes[g][0] != 180 || v.covered > v.pixels / 2);
+            add(&sum, &v);
+        }
+    }
+    tell("gazes", &sum);
+    bed_close(&b);
+}
+
+static void moving_objects_may_be_dropped(void **state)
+{
+    (void)state;
+    struct bed b;
+    bed_open(&b, 40, 36);
+    scatter(&b, &b.warp.view, 91);
+    b.warp.drop_moving = true;
+    run(&b);
+    uint32_t moving = 0;
+    for (size_t i = 0; i < 2 * count_of(&b); i++) {
+        moving += b.warp.positions[i][3] >= 2;
+        assert_true(b.result[i][3] < 2);
+    }
+    assert_true(moving > 300);
+    assert_int_equal(judge(&b).wrong, 0);
     bed_close(&b);
 }
 
@@ -581,7 +656,7 @@ static void a_dolly_towards_a_wall_lets_nothing_through(void **state)
     // the wall alone before the sky, and before a far plane
     static const struct stage stages[] = {{1, {{-1, 1.2, -0.9, 0.8, -3}}},
                                           {2, {{-1, 1.2, -0.9, 0.8, -3}, {-300, 300, -300, 300, -100}}}};
-    static const double steps_m[] = {0.003, 0.012, 0.05, 0.1};
+    static const double steps_m[] = {0.008, 0.02, 0.05, 0.1};
     for (size_t k = 0; k < countof(stages); k++) {
         for (size_t i = k; i < countof(steps_m); i++) {
             const struct dolly kept = run_dolly(&b, &stages[k], steps_m[i], 16),
@@ -670,6 +745,9 @@ int main(void)
         cmocka_unit_test(the_nearest_wins_and_of_equals_the_first),
         cmocka_unit_test(positions_do_not_drift_and_ages_end),
         cmocka_unit_test(an_impossible_motion_loses_its_object_only),
+        cmocka_unit_test(a_half_turn_leaves_nothing),
+        cmocka_unit_test(the_fovea_is_dropped_wherever_it_is),
+        cmocka_unit_test(moving_objects_may_be_dropped),
         cmocka_unit_test(runs_repeat),
         cmocka_unit_test(surfaces_agree_with_brute_force),
         cmocka_unit_test(a_dolly_towards_a_wall_lets_nothing_through),
