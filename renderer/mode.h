@@ -30,8 +30,9 @@ struct mode {
     const char *source;                      // the paper
     const struct mode_parameter *parameters; // NULL where there are none
     uint32_t parameter_count;
-    // False with one sentence in `why` where the device lacks what the mode needs. NULL: runs anywhere.
-    bool (*supported)(const struct gpu *gpu, char *why, size_t why_size);
+    // False with one sentence in `why` where the device lacks what the mode needs with these values. NULL: runs
+    // anywhere.
+    bool (*supported)(const struct gpu *gpu, const double *values, char *why, size_t why_size);
     // False with one sentence in `why` where values that are each in range contradict each other. NULL: none
     // can.
     bool (*agree)(const double *values, char *why, size_t why_size);

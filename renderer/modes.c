@@ -10,6 +10,7 @@
 const struct mode *const modes[] = {
     &mode_regular,
     &mode_time_warped,
+    &mode_vrs,
     NULL,
 };
 

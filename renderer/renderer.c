@@ -161,7 +161,7 @@ struct renderer_option *renderer_option_create(struct renderer *r, struct render
                                                const struct renderer_settings *settings)
 {
     char why[512];
-    if ((choice->mode->supported && !choice->mode->supported(r->gpu, why, sizeof why)) ||
+    if ((choice->mode->supported && !choice->mode->supported(r->gpu, choice->values, why, sizeof why)) ||
         !mode_check(choice, why, sizeof why)) {
         relay(r, RENDERER_ERROR, why);
         return NULL;

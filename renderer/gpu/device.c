@@ -271,6 +271,7 @@ static bool create_device(struct gpu *gpu)
         .samplerAnisotropy = VK_TRUE,
         .shaderStorageImageExtendedFormats = VK_TRUE,
         .shaderInt64 = has.core.features.shaderInt64,
+        .fragmentStoresAndAtomics = has.core.features.fragmentStoresAndAtomics,
     };
     use.v11.shaderDrawParameters = VK_TRUE;
     use.v12.drawIndirectCount = VK_TRUE;
@@ -281,7 +282,18 @@ static bool create_device(struct gpu *gpu)
     use.v13.synchronization2 = VK_TRUE;
     use.v13.maintenance4 = VK_TRUE;
     gpu->int64_atomics = has.core.features.shaderInt64 && has.v12.shaderBufferInt64Atomics;
-    const char *swapchain = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
+    VkPhysicalDeviceFragmentShadingRateFeaturesKHR rate = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FRAGMENT_SHADING_RATE_FEATURES_KHR,
+        .attachmentFragmentShadingRate = VK_TRUE};
+    const char *extensions[2];
+    uint32_t extension_count = 0;
+    if (gpu->surface)
+        extensions[extension_count++] = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
+    gpu->shading_rate = gpu_shading_rate_of(gpu->physical);
+    if (gpu->shading_rate.texel) {
+        extensions[extension_count++] = VK_KHR_FRAGMENT_SHADING_RATE_EXTENSION_NAME;
+        use.v13.pNext = &rate;
+    }
     const VkDeviceCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
         .pNext = &use.core,
@@ -290,8 +302,8 @@ static bool create_device(struct gpu *gpu)
                                                         .queueFamilyIndex = gpu->queue_family,
                                                         .queueCount = 1,
                                                         .pQueuePriorities = (const float[]){1}},
-        .enabledExtensionCount = gpu->surface ? 1 : 0,
-        .ppEnabledExtensionNames = &swapchain,
+        .enabledExtensionCount = extension_count,
+        .ppEnabledExtensionNames = extensions,
     };
     if (!VK(gpu, vkCreateDevice(gpu->physical, &info, NULL, &gpu->device)))
         return false;

@@ -32,6 +32,12 @@ struct gpu_desc {
     uint32_t instance_extension_count;
 };
 
+// What VK_KHR_fragment_shading_rate offers for a map of rates (an attachment).
+struct gpu_shading_rate {
+    uint32_t texel;   // pixels a side that one texel of the map stands for; 0: the device cannot
+    uint32_t largest; // pixels a side of the coarsest square fragment: 2 or 4
+};
+
 struct gpu {
     struct gpu_log log;
     VkInstance instance;
@@ -42,7 +48,8 @@ struct gpu {
     VkPhysicalDeviceDriverProperties driver;
     VkPhysicalDeviceMemoryProperties memory;
     bool int64_atomics; // 64-bit atomics on storage buffers
-    float anisotropy;   // of textures, 1: none
+    struct gpu_shading_rate shading_rate;
+    float anisotropy; // of textures, 1: none
     VkDevice device;
     VkQueue queue;
     uint32_t queue_family;
@@ -64,6 +71,16 @@ bool gpu_check(const struct gpu *gpu, VkResult result, const char *call);
 #define VK(gpu, call) gpu_check((gpu), (call), #call)
 
 void gpu_name(const struct gpu *gpu, VkObjectType type, uint64_t handle, const char *name);
+
+// --- variable rate shading ---
+
+struct gpu_shading_rate gpu_shading_rate_of(VkPhysicalDevice physical);
+// A map's value for fragments of width x height, powers of two: log2(width) << 2 | log2(height).
+uint32_t gpu_shading_rate_code(uint32_t width, uint32_t height);
+// 4 where 4x4 is offered without multisampling, else 2.
+uint32_t gpu_shading_rate_largest(const VkPhysicalDeviceFragmentShadingRateKHR *rates, uint32_t count);
+// The texel's side nearest to 8 that lies in the device's range; 0: there is no square one.
+uint32_t gpu_shading_rate_texel(VkExtent2D least, VkExtent2D most);
 
 // --- memory ---
 
@@ -185,6 +202,8 @@ struct gpu_raster_desc {
     uint32_t colour_count;
     VkFormat depth_format; // 0: none
     VkCompareOp depth_compare;
+    bool keep_depth;          // tested, not written
+    bool shading_rate;        // drawn with a map of rates attached, which decides alone
     float slope_bias;         // depth added per depth slope a pixel; 0: none
     const int32_t *constants; // for both stages
     uint32_t constant_count;

@@ -164,8 +164,9 @@ bool gpu_image_create(struct gpu *gpu, const struct gpu_image_desc *desc, struct
     out->view = make_view(gpu, out, type, 0, out->levels, 0, out->layers);
     if (!out->view)
         goto error;
-    const VkImageUsageFlags attachment =
-        VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+    const VkImageUsageFlags attachment = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
+                                         VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT |
+                                         VK_IMAGE_USAGE_FRAGMENT_SHADING_RATE_ATTACHMENT_BIT_KHR;
     for (uint32_t layer = 0; desc->usage & attachment && layer < out->layers; layer++) {
         out->layer_views[layer] = make_view(gpu, out, VK_IMAGE_VIEW_TYPE_2D, 0, 1, layer, 1);
         if (!out->layer_views[layer])

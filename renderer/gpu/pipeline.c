@@ -184,9 +184,16 @@ VkPipeline gpu_raster_create(struct gpu *gpu, const struct gpu_raster_desc *desc
                                                      .colorAttachmentCount = desc->colour_count,
                                                      .pColorAttachmentFormats = desc->colour_formats,
                                                      .depthAttachmentFormat = desc->depth_format};
+    const VkPipelineFragmentShadingRateStateCreateInfoKHR rate = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_FRAGMENT_SHADING_RATE_STATE_CREATE_INFO_KHR,
+        .pNext = &rendering,
+        .fragmentSize = {1, 1},
+        .combinerOps = {VK_FRAGMENT_SHADING_RATE_COMBINER_OP_KEEP_KHR,
+                        VK_FRAGMENT_SHADING_RATE_COMBINER_OP_REPLACE_KHR}};
     const VkGraphicsPipelineCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
-        .pNext = &rendering,
+        .pNext = desc->shading_rate ? (const void *)&rate : &rendering,
+        .flags = desc->shading_rate ? VK_PIPELINE_CREATE_RENDERING_FRAGMENT_SHADING_RATE_ATTACHMENT_BIT_KHR : 0,
         .stageCount = fragment ? 2 : 1,
         .pStages = stages,
         .pVertexInputState =
@@ -220,7 +227,7 @@ VkPipeline gpu_raster_create(struct gpu *gpu, const struct gpu_raster_desc *desc
             &(VkPipelineDepthStencilStateCreateInfo){
                 .sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
                 .depthTestEnable = desc->depth_format != VK_FORMAT_UNDEFINED,
-                .depthWriteEnable = desc->depth_format != VK_FORMAT_UNDEFINED,
+                .depthWriteEnable = desc->depth_format != VK_FORMAT_UNDEFINED && !desc->keep_depth,
                 .depthCompareOp = desc->depth_compare},
         .pColorBlendState =
             &(VkPipelineColorBlendStateCreateInfo){.sType =

@@ -20,6 +20,7 @@ static bool init_geometry(struct deferred *d, const struct deferred_desc *desc)
                                    .frame = s->frame,
                                    .width = s->width,
                                    .height = s->height,
+                                   .depth_only = desc->depth_only,
                                    .ids = s->scene->scene->moving_count &&
                                           (desc->ids || d->has_taa || d->has_motion),
                                    .redraw_map = view_of(desc->redraw_map)};
@@ -63,7 +64,8 @@ static bool init_light(struct deferred *d, const struct deferred_desc *desc)
                                      .ao = d->ssao.shown.view,
                                      .ao_depth = d->ssao.distance.view,
                                      .redraw_map = view_of(desc->redraw_map),
-                                     .tiles = tiles};
+                                     .tiles = tiles,
+                                     .blocks = desc->blocks};
     if (!shade_init(&d->shade, &shade))
         return false;
     const struct tonemap_desc tonemap = {.gpu = s->gpu,
@@ -135,7 +137,8 @@ void deferred_explain(const struct deferred *d, const struct mode_setup *setup)
     struct mode_explanation *e = setup->explanation;
     mode_explain(e, cull_memory(&d->cull), "indirect draws of %u submodels for two eyes",
                  setup->scene->item_count);
-    mode_explain(e, gbuffer_memory(&d->gbuffer), "G-buffer, %u pipelines%s%s", d->gbuffer.pipeline_count,
+    mode_explain(e, gbuffer_memory(&d->gbuffer), "%s, %u pipelines%s%s",
+                 d->gbuffer.depth_only ? "depth" : "G-buffer", d->gbuffer.pipeline_count,
                  d->gbuffer.has_emissive ? ", emissive because the scene glows"
                                          : "; no emissive, nothing glows",
                  d->gbuffer.has_id ? ", ids because objects move" : "; no ids, nobody asks what moves");

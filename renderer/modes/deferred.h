@@ -31,6 +31,8 @@ struct deferred_desc {
     const struct mode_setup *setup;
     const struct gpu_image *colour[2]; // rgba8, tone-mapped into; the second may be NULL
     bool ids;                          // the mode needs moving ids in the G-buffer
+    const struct shade_blocks *blocks; // for shade_desc; NULL: every pixel by itself
+    bool depth_only;                   // no G-buffer but depth, and ids; with own_shade
     bool own_shade;                    // the mode shades and tone-maps by itself
     // of a mode with a redraw map, else all null
     const struct gpu_image *redraw_map, *position[2];

@@ -48,5 +48,6 @@ void mode_explain(struct mode_explanation *explanation, uint64_t bytes, const ch
 
 extern const struct mode mode_regular;
 extern const struct mode mode_time_warped;
+extern const struct mode mode_vrs;
 
 #endif

@@ -16,7 +16,10 @@ static void defaults_are_the_paper_s(void **state)
     assert_true(mode_parse("time_warped", &choice, text, sizeof text));
     assert_true(mode_parameters_json(&choice, text, sizeof text));
     assert_string_equal(text, "{\"epsilon\":0.2,\"fovea_deg\":10,\"periphery_deg\":30,\"hole_decay\":0.6,"
-                              "\"dynamic_decay\":0.75}");
+                              "\"dynamic_decay\":0.75,\"dynamic_objects\":\"foveated\",\"splat\":\"atomic\"}");
+    assert_true(mode_parse("vrs", &choice, text, sizeof text));
+    assert_true(mode_parameters_json(&choice, text, sizeof text));
+    assert_string_equal(text, "{\"inner_deg\":10,\"outer_deg\":20,\"path\":\"compute\"}");
     assert_true(mode_parse("regular", &choice, text, sizeof text));
     assert_true(mode_parameters_json(&choice, text, sizeof text));
     assert_string_equal(text, "{}");
@@ -37,13 +40,15 @@ static void bad_words_get_a_sentence(void **state)
 {
     (void)state;
     static const char *const bad[][2] = {
-        {"warped", "there is no mode 'warped'; there are: regular, time_warped"},
+        {"warped", "there is no mode 'warped'; there are: regular, time_warped, vrs"},
         {"", "there is no mode ''"},
         {"time_warped:eps=1", "has no parameter 'eps'; it has: epsilon, fovea_deg"},
         {"time_warped:epsilon=2", "goes from 0 to 1"},
         {"time_warped:fovea_deg=91", "goes from 0 to 90 deg"},
         {"time_warped:fovea_deg=30",
          "periphery_deg of mode 'time_warped' is 30; it must be more than fovea_deg, 30"},
+        {"vrs:inner_deg=25", "outer_deg of mode 'vrs' is 20; it must be at least inner_deg, 25"},
+        {"vrs:path=cpu", "path of mode 'vrs' is not 'cpu'"},
         {"time_warped:epsilon=", "is not a number: ''"},
         {"time_warped:epsilon=0.1x", "is not a number: '0.1x'"},
         {"time_warped:epsilon=nan", "is not a number"},

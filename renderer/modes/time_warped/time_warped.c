@@ -74,8 +74,9 @@ struct mode_state {
     bool in_use;   // the images have left their first layout
 };
 
-static bool supported(const struct gpu *gpu, char *why, size_t why_size)
+static bool supported(const struct gpu *gpu, const double *values, char *why, size_t why_size)
 {
+    (void)values;
     if (gpu->int64_atomics)
         return true;
     snprintf(why, why_size,

@@ -1,6 +1,8 @@
 #include "renderer/passes/gbuffer/gbuffer.h"
 
 #include "gbuffer.frag.h"
+#include "gbuffer.frag_depth.h"
+#include "gbuffer.frag_depth_id.h"
 #include "gbuffer.frag_emissive.h"
 #include "gbuffer.frag_emissive_id.h"
 #include "gbuffer.frag_id.h"
@@ -15,9 +17,9 @@ static const VkFormat colour_formats[] = {VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_R32
                                           VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_R16_UINT};
 enum { TARGETS = countof(colour_formats) };
 
-static const VkVertexInputBindingDescription vertex_binding = {0, sizeof(struct scene_vertex),
-                                                               VK_VERTEX_INPUT_RATE_VERTEX};
-static const VkVertexInputAttributeDescription attributes[] = {
+const VkVertexInputBindingDescription gbuffer_vertex_binding = {0, sizeof(struct scene_vertex),
+                                                                VK_VERTEX_INPUT_RATE_VERTEX};
+const VkVertexInputAttributeDescription gbuffer_attributes[GBUFFER_ATTRIBUTES] = {
     {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(struct scene_vertex, position)},
     {1, 0, VK_FORMAT_R16G16_SNORM, offsetof(struct scene_vertex, normal)},
     {2, 0, VK_FORMAT_R16G16B16A16_SNORM, offsetof(struct scene_vertex, tangent)},
@@ -29,9 +31,9 @@ static const VkVertexInputAttributeDescription attributes[] = {
 // In the order of colour_formats; NULL where the target is not built.
 static void targets(const struct gbuffer *g, const struct gpu_image *out[TARGETS])
 {
-    out[0] = &g->base;
-    out[1] = &g->normal;
-    out[2] = &g->surface;
+    out[0] = g->depth_only ? NULL : &g->base;
+    out[1] = g->depth_only ? NULL : &g->normal;
+    out[2] = g->depth_only ? NULL : &g->surface;
     out[3] = g->has_emissive ? &g->emissive : NULL;
     out[4] = g->has_id ? &g->id : NULL;
 }
@@ -47,9 +49,9 @@ static bool create_targets(struct gbuffer *g)
         struct gpu_image *image;
         bool wanted;
     } list[] = {
-        {"g-buffer base colour", colour_formats[0], colour, &g->base, true},
-        {"g-buffer normal", colour_formats[1], colour, &g->normal, true},
-        {"g-buffer surface", colour_formats[2], colour, &g->surface, true},
+        {"g-buffer base colour", colour_formats[0], colour, &g->base, !g->depth_only},
+        {"g-buffer normal", colour_formats[1], colour, &g->normal, !g->depth_only},
+        {"g-buffer surface", colour_formats[2], colour, &g->surface, !g->depth_only},
         {"g-buffer emissive", colour_formats[3], colour, &g->emissive, g->has_emissive},
         {"g-buffer id", colour_formats[4], colour, &g->id, g->has_id},
         {"g-buffer depth", VK_FORMAT_D32_SFLOAT, depth, &g->depth, true},
@@ -93,8 +95,13 @@ static bool create_layouts(struct gbuffer *g, const struct gpu_buffer *frame)
     return g->frame_set && VK(g->gpu, vkCreatePipelineLayout(g->gpu->device, &info, NULL, &g->layout));
 }
 
-static struct gpu_code fragment_code(const struct gbuffer *g)
+static struct gpu_code fragment_code(const struct gbuffer *g, uint32_t features)
 {
+    if (g->depth_only && g->has_id)
+        return (struct gpu_code){gbuffer_frag_depth_id, sizeof gbuffer_frag_depth_id};
+    if (g->depth_only)
+        return features & SCENE_GPU_MASK ? (struct gpu_code){gbuffer_frag_depth, sizeof gbuffer_frag_depth}
+                                         : (struct gpu_code){0};
     if (g->has_emissive)
         return g->has_id ? (struct gpu_code){gbuffer_frag_emissive_id, sizeof gbuffer_frag_emissive_id}
                          : (struct gpu_code){gbuffer_frag_emissive, sizeof gbuffer_frag_emissive};
@@ -126,11 +133,11 @@ static bool create_pipelines(struct gbuffer *g)
         VkPipeline pipeline =
             gpu_raster_create(g->gpu, &(struct gpu_raster_desc){.name = "g-buffer",
                                                                 .vertex = {gbuffer_vert, sizeof gbuffer_vert},
-                                                                .fragment = fragment_code(g),
+                                                                .fragment = fragment_code(g, features),
                                                                 .layout = g->layout,
-                                                                .vertex_binding = &vertex_binding,
-                                                                .attributes = attributes,
-                                                                .attribute_count = countof(attributes),
+                                                                .vertex_binding = &gbuffer_vertex_binding,
+                                                                .attributes = gbuffer_attributes,
+                                                                .attribute_count = GBUFFER_ATTRIBUTES,
                                                                 .colour_formats = formats,
                                                                 .colour_count = TARGETS,
                                                                 .depth_format = VK_FORMAT_D32_SFLOAT,
@@ -193,7 +200,8 @@ bool gbuffer_init(struct gbuffer *g, const struct gbuffer_desc *desc)
                           .scene = desc->scene,
                           .width = desc->width,
                           .height = desc->height,
-                          .has_emissive = (desc->scene->features & SCENE_GPU_EMISSIVE) != 0,
+                          .depth_only = desc->depth_only,
+                          .has_emissive = !desc->depth_only && desc->scene->features & SCENE_GPU_EMISSIVE,
                           .has_id = desc->ids};
     return create_targets(g) && create_layouts(g, desc->frame) && create_pipelines(g) &&
            (!desc->redraw_map || create_mask(g, desc));

@@ -7,13 +7,17 @@
 
 #include "renderer/scene/scene_gpu.h"
 
-enum { GBUFFER_PIPELINES = 64 };
+enum { GBUFFER_PIPELINES = 64, GBUFFER_ATTRIBUTES = 6 };
+
+// What gbuffer.vert reads, for passes that draw the same surfaces with it.
+extern const VkVertexInputBindingDescription gbuffer_vertex_binding;
+extern const VkVertexInputAttributeDescription gbuffer_attributes[GBUFFER_ATTRIBUTES];
 
 struct gbuffer {
     struct gpu *gpu;
     const struct scene_gpu *scene;
     uint32_t width, height;
-    bool has_emissive, has_id;
+    bool depth_only, has_emissive, has_id;
     // two layers each, one per eye
     struct gpu_image base;     // rgba8 sRGB: base colour, occlusion in alpha
     struct gpu_image normal;   // r32 uint: shading normal, octahedral snorm 2x16
@@ -42,6 +46,7 @@ struct gbuffer_desc {
     const struct scene_gpu *scene;
     const struct gpu_buffer *frame;
     uint32_t width, height;
+    bool depth_only;         // and ids, where asked for: nothing to shade from
     bool ids;                // keep moving ids, for modes with history
     VkImageView redraw_map;  // r8 uint, layout GENERAL, two layers; null: every pixel is drawn
     VkImageView position[2]; // rgba32f, GENERAL: of the kept pixels, for GBUFFER_MOVING_EVERYWHERE; else null

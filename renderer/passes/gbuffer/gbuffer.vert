@@ -38,7 +38,9 @@ void main()
 {
     shared_item item = items[gl_InstanceIndex];
     mat4 m = objects[item.object].world_from_mesh;
-    gl_Position = frame.eyes[push.eye].clip_from_world * vec4((m * vec4(in_position, 1.0)).xyz, 1.0);
+    // the same to the last bit in every pipeline, so that a later pass over the same depths draws the same pixels
+    precise vec4 position = frame.eyes[push.eye].clip_from_world * vec4((m * vec4(in_position, 1.0)).xyz, 1.0);
+    gl_Position = position;
     // normals go with the cofactor matrix, right for mirrored and unevenly scaled objects alike
     mat3 linear = mat3(m);
     mat3 cofactor = mat3(cross(linear[1], linear[2]), cross(linear[2], linear[0]), cross(linear[0], linear[1]));

@@ -2,12 +2,13 @@
 
 #include "renderer/shared/shared.h"
 
+#include "coarse.comp.h"
 #include "shade.comp.h"
 #include "shade.comp_redraw.h"
 
 #include <string.h>
 
-enum { REDRAW_MAP = 12, TILES = 13, BINDINGS };
+enum { COUNTERS = 11, REDRAW_MAP = 12, TILES = 13, BINDINGS };
 
 static const struct gpu_binding all_bindings[BINDINGS] = {
     {.type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER},         // frame
@@ -21,26 +22,33 @@ static const struct gpu_binding all_bindings[BINDINGS] = {
     {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, // occlusion
     {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, // its distances
     {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, // sun shadow
-    {.absent = true},
-    {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},  // redraw map, where there is one
-    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // tiles of it
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},         // counters, where blocks are shaded
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},          // redraw map, where there is one
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},         // tiles of it
 };
+
+static struct gpu_code code_for(const struct shade_desc *desc)
+{
+    if (desc->blocks)
+        return (struct gpu_code){coarse_comp, sizeof coarse_comp};
+    return desc->redraw_map ? (struct gpu_code){shade_comp_redraw, sizeof shade_comp_redraw}
+                            : (struct gpu_code){shade_comp, sizeof shade_comp};
+}
 
 static bool create_kernel(struct shade *s, const struct shade_desc *desc, struct gpu_binding *bindings)
 {
     memcpy(bindings, all_bindings, sizeof all_bindings);
     bindings[REDRAW_MAP].absent = bindings[TILES].absent = !desc->redraw_map;
-    const struct gpu_code code = desc->redraw_map
-                                     ? (struct gpu_code){shade_comp_redraw, sizeof shade_comp_redraw}
-                                     : (struct gpu_code){shade_comp, sizeof shade_comp};
+    bindings[COUNTERS].absent = !desc->blocks;
+    const uint32_t push_bytes = desc->blocks ? 2 * sizeof(float) : desc->redraw_map ? sizeof(uint32_t) : 0;
     const int32_t constants[] = {desc->emissive != VK_NULL_HANDLE, desc->ao != VK_NULL_HANDLE,
                                  desc->every_light, desc->shadow_map != VK_NULL_HANDLE};
     return gpu_kernel_create(s->gpu,
                              &(struct gpu_kernel_desc){.name = "shade",
-                                                       .code = code,
+                                                       .code = code_for(desc),
                                                        .bindings = bindings,
                                                        .binding_count = BINDINGS,
-                                                       .push_bytes = desc->redraw_map ? sizeof(uint32_t) : 0,
+                                                       .push_bytes = push_bytes,
                                                        .constants = constants,
                                                        .constant_count = countof(constants)},
                              &s->kernel);
@@ -61,6 +69,9 @@ bool shade_init(struct shade *s, const struct shade_desc *desc)
     *s = (struct shade){.gpu = desc->gpu,
                         .width = desc->width,
                         .height = desc->height,
+                        .blocks = desc->blocks,
+                        .inner_deg = desc->blocks ? desc->blocks->inner_deg : 0,
+                        .outer_deg = desc->blocks ? desc->blocks->outer_deg : 0,
                         .redraw = desc->redraw_map,
                         .tiles = desc->tiles};
     const struct gpu_image_desc hdr = {.name = "hdr",
@@ -91,6 +102,7 @@ bool shade_init(struct shade *s, const struct shade_desc *desc)
         {.view = desc->shadow_map ? desc->shadow_map : desc->depth,
          .sampler = s->compare,
          .layout = VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL},
+        {.buffer = desc->blocks ? desc->blocks->counters : NULL},
         [REDRAW_MAP] = {.view = desc->redraw_map},
         [TILES] = {.buffer = desc->tiles ? desc->tiles : desc->frame},
     };
@@ -113,8 +125,12 @@ void shade_finish(struct shade *s)
 void shade_record(const struct shade *s, VkCommandBuffer cmd)
 {
     const uint32_t listed = 0;
+    const float rings[2] = {s->inner_deg, s->outer_deg};
     gpu_image_layout(cmd, &s->hdr, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
-    gpu_dispatch(cmd, &s->kernel, s->set, &listed, s->redraw ? sizeof listed : 0,
+    gpu_dispatch(cmd, &s->kernel, s->set, s->blocks ? (const void *)rings : &listed,
+                 s->blocks   ? sizeof rings
+                 : s->redraw ? sizeof listed
+                             : 0,
                  (s->width + SHARED_TILE - 1) / SHARED_TILE, (s->height + SHARED_TILE - 1) / SHARED_TILE, 2);
 }
 

@@ -13,10 +13,18 @@ struct shade {
     uint32_t width, height;
     struct gpu_kernel kernel;
     VkDescriptorSet set;
-    bool redraw;
+    bool blocks, redraw;
+    float inner_deg, outer_deg;
     const struct gpu_buffer *tiles;
     VkSampler sampler, compare;
     struct gpu_image hdr; // two layers, layout GENERAL while in use
+};
+
+// One pixel of each 2x2 block beyond inner_deg from the gaze, of each 4x4 block beyond outer_deg; where the
+// gaze is not valid, every pixel (coarse.comp).
+struct shade_blocks {
+    const struct gpu_buffer *counters; // shared_counters: shaded_px is added to
+    float inner_deg, outer_deg;        // inner_deg <= outer_deg
 };
 
 struct shade_desc {
@@ -29,10 +37,11 @@ struct shade_desc {
     // Ambient occlusion of half size, rounded up, two layers, sampled, GENERAL: 1 is open. Null: none. Its
     // distances along the view axis are r32f, 0 for background.
     VkImageView ao, ao_depth;
-    VkImageView shadow_map;         // of the sun (sun_shadow.glsl), DEPTH_READ_ONLY_OPTIMAL; null: none
-    VkImageView redraw_map;         // r8 uint, GENERAL; null: every pixel is shaded
-    const struct gpu_buffer *tiles; // of the redraw map (tiles.glsl); NULL: shade_record_tiles is not used
-    bool every_light;               // no light lists: what they must equal, for tests
+    VkImageView shadow_map;            // of the sun (sun_shadow.glsl), DEPTH_READ_ONLY_OPTIMAL; null: none
+    VkImageView redraw_map;            // r8 uint, GENERAL; null: every pixel is shaded
+    const struct gpu_buffer *tiles;    // of the redraw map (tiles.glsl); NULL: shade_record_tiles is not used
+    const struct shade_blocks *blocks; // not with a redraw map; NULL: every pixel by itself
+    bool every_light;                  // no light lists: what they must equal, for tests
 };
 
 bool shade_init(struct shade *shade, const struct shade_desc *desc);
