@@ -21,8 +21,8 @@ layout(location = 0) out vec4 out_hdr;
 vec3 fragment_direction()
 {
     vec2 size = vec2(frame.width, frame.height);
-    return mat3(frame_eye(push.eye).world_from_eye) *
-           view_ray(frame_eye(push.eye), size, gl_FragCoord.xy - frame.jitter);
+    return mat3(EYE(push.eye, world_from_eye)) *
+           view_ray(EYE(push.eye, tangents), size, gl_FragCoord.xy - frame.jitter);
 }
 
 void write_radiance(vec3 radiance)

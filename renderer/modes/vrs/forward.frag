@@ -16,7 +16,7 @@ void main()
 {
     vec3 direction = fragment_direction();
     float distance = frame.near_m / gl_FragCoord.z;
-    vec3 position = frame_eye(push.eye).world_from_eye[3].xyz + direction * distance;
+    vec3 position = EYE(push.eye, world_from_eye)[3].xyz + direction * distance;
     shared_material m = materials[in_ids.x];
     surface_point s = surface_of(material_base(m).rgb, material_surface(m), material_normal(m), -normalize(direction));
     float occlusion = material_occlusion(m);

@@ -25,8 +25,8 @@ void main()
     if (any(greaterThanEqual(at.xy, imageSize(rates).xy)))
         return;
     vec2 centre = (vec2(at.xy) + 0.5) * float(push.texel);
-    float off = view_eccentricity_deg(frame_eye(uint(at.z)),
-                                      view_ray(frame_eye(uint(at.z)), vec2(frame.width, frame.height), centre));
+    float off = view_eccentricity_deg(EYE(uint(at.z), gaze),
+                                      view_ray(EYE(uint(at.z), tangents), vec2(frame.width, frame.height), centre));
     uint rate = off > push.outer_deg ? push.outermost : off > push.inner_deg ? push.middle : 0u; // 0: every pixel
     imageStore(rates, at, uvec4(rate));
 }

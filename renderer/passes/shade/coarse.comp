@@ -39,7 +39,7 @@ shared uint anybody[3];
 float eccentricity_of(uvec2 block, uint size, uint eye)
 {
     vec2 centre = (vec2(block) + 0.5) * float(size);
-    return view_eccentricity_deg(frame_eye(eye), view_ray(frame_eye(eye), vec2(frame.width, frame.height), centre));
+    return view_eccentricity_deg(EYE(eye, gaze), view_ray(EYE(eye, tangents), vec2(frame.width, frame.height), centre));
 }
 
 uint block_size(uvec2 pixel, uint eye)
