@@ -46,6 +46,8 @@ struct frame_stats {
     double cpu_ms;              // recording and submitting
     uint64_t frustum_triangles; // the same without foveated culling
     uint64_t frustum_submodels;
+    uint64_t
+        moving_px; // of both eyes, whose surface belongs to a moving object; 0 unless settings.motion is on
     enum frame_redraw redraw;
     uint32_t timer_count;
     struct {

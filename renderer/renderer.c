@@ -378,6 +378,7 @@ static void fill_stats(const struct renderer_option *o, enum frame_redraw redraw
         .cpu_ms = cpu_ms,
         .frustum_triangles = c->frustum_triangles ? c->frustum_triangles : c->triangles,
         .frustum_submodels = c->frustum_submodels ? c->frustum_submodels : c->submodels,
+        .moving_px = c->moving_px,
         .redraw = o->result.redraw_map ? redraw : FRAME_REDRAW_NONE,
         .timer_count = f->timer_count};
     for (uint32_t i = 0; i < f->timer_count && i < FRAME_TIMERS; i++) {

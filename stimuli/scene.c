@@ -136,7 +136,7 @@ void scene_finish(struct scene *scene)
         scene->nodes[scene->channels[i].node].animated = true;
     for (uint32_t i = 0; i < scene->node_count; i++) {
         struct scene_node *node = &scene->nodes[i];
-        node->moving = node->animated || (node->parent >= 0 && scene->nodes[node->parent].moving);
+        node->moving = node->animated || node->held || (node->parent >= 0 && scene->nodes[node->parent].moving);
     }
     scene->moving_count = 0;
     for (uint32_t i = 0; i < scene->instance_count; i++) {

@@ -91,12 +91,13 @@ struct scene_texture {
 struct scene_node {
     int32_t parent; // -1 for a root; always less than the node's own index
     struct dmat4 local;
-    bool moving; // it or an ancestor is animated
+    bool moving; // it or an ancestor is animated or held
     // used instead of `local` where a channel drives the node
     struct dvec3 translation;
     struct dquat rotation;
     struct dvec3 scale;
     bool animated;
+    bool held; // counts as moving though it stands still, to measure what moving pixels cost
 };
 
 // A mesh at a node. Draw order is free.

@@ -16,9 +16,7 @@ void motion_destroy(struct motion *motion); // NULL is fine
 bool motion_draw(struct motion *motion, const struct frame *frame);
 // Of the last frame drawn, as renderer_read_motion; valid until the next draw.
 const float *motion_of(const struct motion *motion, int eye);
-// The share of both eyes' pixels that something moving covers: their surface was not, one frame ago, where a
-// static one would have been, by more than a tenth of a pixel or 0.2 % of its distance. NaN unless the frame
-// before was drawn too.
+// The share of both eyes' pixels that a moving object covers in the last frame drawn.
 double motion_share(const struct motion *motion);
 
 #endif

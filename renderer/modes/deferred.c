@@ -102,6 +102,7 @@ static bool init_motion(struct deferred *d, const struct deferred_desc *desc)
     const struct motion_desc motion = {.gpu = s->gpu,
                                        .scene = s->scene,
                                        .frame = s->frame,
+                                       .counters = s->counters,
                                        .width = s->width,
                                        .height = s->height,
                                        .depth = d->gbuffer.depth.view,

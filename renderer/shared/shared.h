@@ -123,6 +123,7 @@ struct shared_counters {
     SHARED_UINT submodels;
     SHARED_UINT frustum_triangles; // 0 where culling is by the frustum alone
     SHARED_UINT frustum_submodels;
+    SHARED_UINT moving_px; // counted by passes/motion alone
 };
 
 #ifndef GL_core_profile

@@ -16,6 +16,8 @@ static const struct builtin_parameter town_parameters[] = {
     {"triangles", "triangles", TOWN_TRIANGLES_MIN, TOWN_TRIANGLES_MAX, 3000000,
      "drawn without culling, within 10 %"},
     {"seed", "", 0, 4294967295.0, 1, "another town of the same kind"},
+    {"moving", "%", 0, 100, 0,
+     "of all that stands still, treated as moving, to measure what that costs; casts no shadow"},
     {.name = NULL},
 };
 

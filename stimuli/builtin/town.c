@@ -1,5 +1,6 @@
 #include "stimuli/builtin/town.h"
 
+#include "stimuli/builtin/random.h"
 #include "stimuli/builtin/town_models.h"
 #include "stimuli/builtin/town_parts.h"
 
@@ -164,6 +165,13 @@ static void build(struct town *town)
     town_add_movers(town);
 }
 
+// Nodes drawn by lot; the whole ground is one.
+static void hold_nodes(struct town *town, double percent)
+{
+    for (uint32_t i = 0; i < town->maker->scene->node_count; i++)
+        town->maker->scene->nodes[i].held = 100.0 * (double)random_unit(town->seed, i) < percent;
+}
+
 struct scene *town_make(const double *values)
 {
     struct maker *maker = malloc(sizeof *maker);
@@ -179,6 +187,7 @@ struct scene *town_make(const double *values)
             build(town);
         else
             maker->failed = true;
+        hold_nodes(town, values[2]);
         scene = maker_finish(maker);
         for (int i = 0; i < TOWN_MODELS; i++)
             voxel_destroy(&town->models[i]);

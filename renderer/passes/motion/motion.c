@@ -15,6 +15,7 @@ bool motion_init(struct motion *m, const struct motion_desc *desc)
         {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},                      // depth
         {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, .absent = !desc->id}, // id
         {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},                               // motion
+        {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},                              // counters
     };
     const struct gpu_kernel_desc kernel = {
         .name = "motion vectors",
@@ -39,7 +40,8 @@ bool motion_init(struct motion *m, const struct motion_desc *desc)
         {.buffer = &desc->scene->motions},
         {.view = desc->depth, .sampler = m->sampler, .layout = VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL},
         {.view = desc->id, .sampler = m->sampler, .layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL},
-        {.view = m->image.view}};
+        {.view = m->image.view},
+        {.buffer = desc->counters}};
     m->set = gpu_set_create(m->gpu, m->kernel.set_layout, bindings, resources, countof(bindings));
     return m->set;
 }

@@ -14,6 +14,7 @@ layout(binding = 2) uniform sampler2DArray depth_image;
 layout(binding = 3) uniform usampler2DArray id_image;
 #endif
 layout(binding = 4, rgba32f) uniform writeonly image2DArray motion;
+layout(scalar, binding = 5) buffer Counters { shared_counters counters; };
 layout(push_constant) uniform Push { uint motion_count; } push;
 
 #include "renderer/shared/last.glsl"
@@ -33,6 +34,8 @@ void main()
         position = vec4(world_from_eye[3].xyz + direction * distance, 1.0);
 #ifdef ID
         position.w += float(texelFetch(id_image, pixel, 0).x);
+        if (position.w >= 2.0 && frame.moving != 0u)
+            atomicAdd(counters.moving_px, 1u);
 #endif
     }
     vec3 last = last_pixel(eye, position);

@@ -17,7 +17,7 @@ struct motion {
 struct motion_desc {
     struct gpu *gpu;
     const struct scene_gpu *scene;
-    const struct gpu_buffer *frame;
+    const struct gpu_buffer *frame, *counters;
     uint32_t width, height;
     VkImageView depth, id; // of the G-buffer; id null: nothing moves
 };

@@ -31,17 +31,18 @@ static void wrong_values_name_the_range(void **state)
     refused("town:triangles=nan", "nan", "20000 to 8000000");
     refused("town:triangles=99999999999999999999999999999999999999", "9999", "20000 to 8000000");
     refused("town:seed=4294967296", "seed", "0 to 4294967295");
+    refused("town:moving=101", "moving=101", "0 to 100");
     refused("town:triangles=50000,seed=x", "seed=x", "4294967295");
 }
 
 static void wrong_names_name_the_valid_ones(void **state)
 {
     (void)state;
-    refused("town:foo=1", "foo=1", "triangles, seed");
-    refused("town:foo", "foo", "triangles, seed");
-    refused("town:", "town", "triangles, seed");
-    refused("town:seed=1,", "town", "triangles, seed");
-    refused("town:=5", "=5", "triangles, seed");
+    refused("town:foo=1", "foo=1", "triangles, seed, moving");
+    refused("town:foo", "foo", "triangles, seed, moving");
+    refused("town:", "town", "triangles, seed, moving");
+    refused("town:seed=1,", "town", "triangles, seed, moving");
+    refused("town:=5", "=5", "triangles, seed, moving");
     refused("atrium:x", "'x'", "no parameters");
     refused("atrium:", "atrium", "no parameters");
     refused("nosuch", "nosuch", "atrium, town");
