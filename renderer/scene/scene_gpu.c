@@ -133,6 +133,9 @@ static bool create_geometry(struct scene_gpu *s)
     s->before = calloc(scene->node_count + 1, sizeof *s->before);
     if (!s->now || !s->before)
         return false;
+    s->still = calloc(s->scene->instance_count + 1, sizeof *s->still);
+    if (!s->still)
+        return false;
     scene_pose(scene, 0, false, s->now);
     scene_pose(scene, 0, false, s->before);
     s->motion_count = scene->moving_count + 1;
@@ -193,7 +196,17 @@ void scene_gpu_destroy(struct scene_gpu *s)
     free(s->object_instance);
     free(s->now);
     free(s->before);
+    free(s->still);
     free(s);
+}
+
+// Updates without motion after which an object counts as standing: a few times the six frames within which its
+// box must be redrawn after it last moved (passes/movers), since several options may update for each frame.
+enum { STILL_UPDATES = 48 };
+
+static bool same_place(const struct dmat4 *a, const struct dmat4 *b)
+{
+    return memcmp(a, b, sizeof *a) == 0;
 }
 
 static struct shared_object place_object(const struct scene_gpu *s, uint32_t object)
@@ -201,6 +214,7 @@ static struct shared_object place_object(const struct scene_gpu *s, uint32_t obj
     const struct scene_instance *instance = &s->scene->instances[s->object_instance[object]];
     struct fmat4 m = geometry_relative(&s->now[instance->node], s->origin);
     struct shared_object placed = {.moving_id = instance->moving_id};
+    placed.moved = instance->moving_id && s->still[object] < STILL_UPDATES;
     memcpy(placed.world_from_mesh, m.m, sizeof m.m);
     return placed;
 }
@@ -245,8 +259,12 @@ void scene_gpu_update(struct scene_gpu *s, VkCommandBuffer cmd, struct dvec3 pos
     struct dmat4 identity = dmat4_identity();
     motions[0] = motions[s->motion_count] = geometry_relative(&identity, (struct dvec3){0, 0, 0});
     for (uint32_t i = 0; i < count; i++) {
+        const uint32_t node = s->scene->instances[s->object_instance[i]].node;
+        if (i < s->moving_object_count)
+            s->still[i] =
+                same_place(&s->now[node], &s->before[node]) ? s->still[i] + (s->still[i] < STILL_UPDATES) : 0;
         objects[i] = place_object(s, i);
-        const uint32_t id = objects[i].moving_id, node = s->scene->instances[s->object_instance[i]].node;
+        const uint32_t id = objects[i].moving_id;
         if (id) {
             motions[id] = motion_of(s, &s->now[node], &s->before[node]);
             motions[s->motion_count + id] = motion_of(s, &s->before[node], &s->now[node]);

@@ -59,6 +59,7 @@ struct scene_gpu {
     bool placed;         // objects hold valid matrices for `origin`
     uint32_t *object_instance;
     struct dmat4 *now, *before; // world_from_node
+    uint32_t *still;            // per object: updates in a row without motion
 };
 
 struct scene_gpu *scene_gpu_create(struct gpu *gpu, const struct scene *scene);

@@ -84,6 +84,7 @@ struct shared_cull_group {
 struct shared_object {
     SHARED_MAT4(world_from_mesh);
     SHARED_UINT moving_id; // 0: static
+    SHARED_UINT moved;     // 1: its place changed lately (scene_gpu.h)
 };
 
 struct shared_material {

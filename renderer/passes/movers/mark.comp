@@ -38,6 +38,8 @@ void main()
         return;
     shared_item item = items[moving[index]];
     shared_object object = objects[item.object];
+    if (object.moved == 0u)
+        return; // what the camera uncovers of it leaves holes, as of all that stands
     mat4 clip = EYE(eye, clip_from_world);
     mark(project(item, clip * object.world_from_mesh), eye);
     mark(project(item, clip * motions[push.motion_count + object.moving_id] * object.world_from_mesh), eye);

@@ -18,7 +18,8 @@ layout(binding = 2, r8ui) uniform uimage2DArray redraw_map;
 
 #ifdef MOVING
 // Whether it is the turn of the pixel's tile. c_e D^t falls under epsilon after P frames; a tile redraws its moving
-// pixels every P frames, each tile in its own, so that neither one frame has all the work nor many tiles a few pixels.
+// pixels every P frames, in the turn of its strip, one of P across the image: so no frame has all the work, and what one
+// frame redraws lies together, where few submodels are (scattered tiles touch nearly all of them in every frame).
 bool tiles_turn(ivec3 pixel)
 {
     if (push.dynamic_decay <= 0.0 || push.dynamic_decay >= 1.0 || push.epsilon <= 0.0)
@@ -28,9 +29,8 @@ bool tiles_turn(ivec3 pixel)
     if (confidence <= push.epsilon)
         return false; // redrawn anyway
     float period = floor(log(push.epsilon / confidence) / log(push.dynamic_decay)) + 1.0;
-    // neighbours differ: the golden ratio's multiples in both directions
-    uint phase = uint(tile.x) * 2654435769u + uint(tile.y) * 1640531527u + uint(pixel.z) * 40503u;
-    return period < 64.0 && (push.turn + (phase >> 16)) % uint(period) == 0u;
+    uint strip = uint(tile.x) * uint(period) / ((frame.width + SHARED_TILE - 1) / SHARED_TILE);
+    return period < 64.0 && (push.turn + strip) % uint(period) == 0u;
 }
 
 bool moving_redrawn(ivec3 pixel)
