@@ -31,6 +31,8 @@ float eccentricity_confidence(ivec3 pixel, vec2 place)
 }
 
 #ifdef MOVING
+#include "renderer/shared/turn.glsl"
+
 // Whether it is the turn of the pixel's tile. c_e D^t falls under epsilon after P frames; a tile redraws its moving
 // pixels every P frames, each tile in its own, so that neither one frame has all the work nor many tiles a few pixels.
 bool tiles_turn(ivec3 pixel)
@@ -42,9 +44,7 @@ bool tiles_turn(ivec3 pixel)
     if (confidence <= push.epsilon)
         return false; // redrawn anyway
     float period = floor(log(push.epsilon / confidence) / log(push.dynamic_decay)) + 1.0;
-    // neighbours differ: the golden ratio's multiples in both directions
-    uint phase = uint(tile.x) * 2654435769u + uint(tile.y) * 1640531527u + uint(pixel.z) * 40503u;
-    return period < 64.0 && (push.turn + (phase >> 16)) % uint(period) == 0u;
+    return period < 64.0 && tile_has_turn(uvec2(tile), uint(pixel.z), push.turn, uint(period));
 }
 #endif
 
