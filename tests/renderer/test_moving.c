@@ -216,6 +216,12 @@ static void a_screen_full_of_moving_objects_is_shared_out(void **state)
             print_message("%s, %s: %.1f %% shaded, %.1f %% at most\n", pieces ? "37 pieces" : "one piece",
                           names[i], 100 * load[pieces][i].mean, 100 * load[pieces][i].most);
         }
+        const struct load *l = load[pieces];
+        // a sixth of the trusted periphery a frame, more between, all of the fovea
+        assert_true(l[0].mean < 0.25 && l[0].most < 1.25 * l[0].mean);
+        assert_true(l[1].mean > 0.9999); // no trust in what is one frame old
+        // nothing ages, but what may be hidden behind the moving surfaces has its turns
+        assert_true(l[2].mean <= l[0].mean && l[2].most < 1.25 * l[2].mean);
         renderer_scene_destroy(uploaded);
         scene_destroy(scene);
     }
