@@ -36,7 +36,8 @@ static bool init_ssao(struct deferred *d, const struct deferred_desc *desc)
                              .frame = s->frame,
                              .width = s->width,
                              .height = s->height,
-                             .depth = d->has_map ? VK_NULL_HANDLE : d->gbuffer.depth.view,
+                             .depth = d->gbuffer.depth.view,
+                             .redraw_map = view_of(desc->redraw_map),
                              .position = {view_of(desc->position[0]), view_of(desc->position[1])}};
     if (d->has_map) {
         ssao.pyramid = &desc->redraw->pyramid;

@@ -2,6 +2,7 @@
 
 #include "renderer/scene/draw_list.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -108,6 +109,10 @@ static bool create_materials(struct scene_gpu *s)
     return ok;
 }
 
+// So that no product with a distance or a highlight overflows, which a surface that faces away would turn into
+// no number: infinity times 0. Any strength this side of it is white.
+static const float brightest = 1e30f;
+
 // Lights lie in world coordinates on the CPU and are rewritten when the origin moves.
 static void place_lights(struct scene_gpu *s)
 {
@@ -118,7 +123,8 @@ static void place_lights(struct scene_gpu *s)
         list[i] = (struct shared_light){
             .position = {(float)p.x, (float)p.y, (float)p.z},
             .range_m = l->range_m,
-            .intensity = {l->intensity[0], l->intensity[1], l->intensity[2]},
+            .intensity = {fminf(l->intensity[0], brightest), fminf(l->intensity[1], brightest),
+                          fminf(l->intensity[2], brightest)},
             .cos_inner = l->cos_inner,
             .direction = {(float)l->direction.x, (float)l->direction.y, (float)l->direction.z},
             .cos_outer = l->cos_outer};
@@ -292,7 +298,8 @@ void scene_gpu_constants(const struct scene_gpu *s, struct shared_frame *out)
     out->sun_direction[1] = (float)scene->sun.direction.y;
     out->sun_direction[2] = (float)scene->sun.direction.z;
     out->sun_direction[3] = e[0] > 0 || e[1] > 0 || e[2] > 0 ? 1 : 0;
-    copy3(out->sun_illuminance, e);
+    for (int i = 0; i < 3; i++)
+        out->sun_illuminance[i] = fminf(e[i], brightest);
     copy3(out->sky_zenith, scene->sky.zenith);
     copy3(out->sky_horizon, scene->sky.horizon);
     copy3(out->sky_ground, scene->sky.ground);

@@ -45,11 +45,17 @@ void stage_close(struct stage *stage)
 
 struct renderer_option *stage_option(struct stage *stage, struct renderer_scene *scene, const char *mode)
 {
+    return stage_option_set(stage, scene, mode, NULL);
+}
+
+struct renderer_option *stage_option_set(struct stage *stage, struct renderer_scene *scene, const char *mode,
+                                         const struct renderer_settings *settings)
+{
     struct mode_choice choice;
     char error[512];
     if (!mode_parse(mode, &choice, error, sizeof error))
         fail_msg("%s", error);
-    struct renderer_option *option = renderer_option_create(stage->renderer, scene, &choice, NULL);
+    struct renderer_option *option = renderer_option_create(stage->renderer, scene, &choice, settings);
     if (!option)
         fail_msg("%s: %s", mode, stage->log);
     return option;
@@ -89,4 +95,19 @@ struct stage_difference stage_compare(const struct stage *stage, const uint8_t *
     }
     d.mean /= 3.0 * (double)count; // alpha is 255 in both
     return d;
+}
+
+struct stage_difference stage_differ(const struct stage *stage, struct renderer_option *a,
+                                     struct renderer_option *b)
+{
+    struct stage_difference worst = {0};
+    for (int eye = 0; eye < EYES; eye++) {
+        uint8_t *x = stage_read(stage, a, eye), *y = stage_read(stage, b, eye);
+        const struct stage_difference d = stage_compare(stage, x, y);
+        worst.mean += d.mean / EYES;
+        worst.max = d.max > worst.max ? d.max : worst.max;
+        free(x);
+        free(y);
+    }
+    return worst;
 }

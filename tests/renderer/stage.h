@@ -17,6 +17,8 @@ bool stage_open_timed(struct stage *stage, uint32_t width, uint32_t height, bool
 void stage_close(struct stage *stage);
 
 struct renderer_option *stage_option(struct stage *stage, struct renderer_scene *scene, const char *mode);
+struct renderer_option *stage_option_set(struct stage *stage, struct renderer_scene *scene, const char *mode,
+                                         const struct renderer_settings *settings);
 
 // The frame a path reaches at a time, gaze in the same direction for both eyes.
 struct frame stage_frame(const struct stage *stage, const struct scene *scene, uint64_t number, double time_s,
@@ -30,5 +32,8 @@ struct stage_difference {
     int max;
 };
 struct stage_difference stage_compare(const struct stage *stage, const uint8_t *a, const uint8_t *b);
+// Of two options' last frames, both eyes.
+struct stage_difference stage_differ(const struct stage *stage, struct renderer_option *a,
+                                     struct renderer_option *b);
 
 #endif

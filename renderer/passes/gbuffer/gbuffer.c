@@ -28,14 +28,20 @@ const VkVertexInputAttributeDescription gbuffer_attributes[GBUFFER_ATTRIBUTES] =
     {5, 0, VK_FORMAT_R8G8B8A8_UNORM, offsetof(struct scene_vertex, colour)},
 };
 
-// In the order of colour_formats; NULL where the target is not built.
-static void targets(const struct gbuffer *g, const struct gpu_image *out[TARGETS])
+// What is built, in the order of the fragment shader's outputs, without gaps; returns how many.
+static uint32_t targets(const struct gbuffer *g, const struct gpu_image *out[TARGETS])
 {
-    out[0] = g->depth_only ? NULL : &g->base;
-    out[1] = g->depth_only ? NULL : &g->normal;
-    out[2] = g->depth_only ? NULL : &g->surface;
-    out[3] = g->has_emissive ? &g->emissive : NULL;
-    out[4] = g->has_id ? &g->id : NULL;
+    uint32_t count = 0;
+    if (g->depth_only)
+        return 0;
+    out[count++] = &g->base;
+    out[count++] = &g->normal;
+    out[count++] = &g->surface;
+    if (g->has_emissive)
+        out[count++] = &g->emissive;
+    if (g->has_id)
+        out[count++] = &g->id;
+    return count;
 }
 
 static bool create_targets(struct gbuffer *g)
@@ -114,9 +120,9 @@ static bool create_pipelines(struct gbuffer *g)
 {
     const struct gpu_image *images[TARGETS];
     VkFormat formats[TARGETS];
-    targets(g, images);
-    for (uint32_t i = 0; i < TARGETS; i++)
-        formats[i] = images[i] ? colour_formats[i] : VK_FORMAT_UNDEFINED;
+    const uint32_t count = targets(g, images);
+    for (uint32_t i = 0; i < count; i++)
+        formats[i] = images[i]->format;
     for (uint32_t b = 0; b < g->scene->bucket_count; b++) {
         uint32_t features = g->scene->buckets[b].features, known = 0;
         while (known < g->pipeline_count && g->pipelines[known].features != features)
@@ -139,7 +145,7 @@ static bool create_pipelines(struct gbuffer *g)
                                                                 .attributes = gbuffer_attributes,
                                                                 .attribute_count = GBUFFER_ATTRIBUTES,
                                                                 .colour_formats = formats,
-                                                                .colour_count = TARGETS,
+                                                                .colour_count = count,
                                                                 .depth_format = VK_FORMAT_D32_SFLOAT,
                                                                 .depth_compare = VK_COMPARE_OP_GREATER,
                                                                 .constants = constants,
@@ -293,16 +299,16 @@ static void draw_part(const struct gbuffer *g, VkCommandBuffer cmd, const struct
 {
     const struct gpu_image *images[TARGETS];
     VkRenderingAttachmentInfo colours[TARGETS];
-    targets(g, images);
-    for (uint32_t i = 0; i < TARGETS; i++)
+    const uint32_t count = targets(g, images);
+    for (uint32_t i = 0; i < count; i++)
         colours[i] =
             (VkRenderingAttachmentInfo){.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
-                                        .imageView = images[i] ? images[i]->layer_views[eye] : VK_NULL_HANDLE,
+                                        .imageView = images[i]->layer_views[eye],
                                         .imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
                                         // the id of the background is 0; the rest is read only under depth
-                                        .loadOp = !part->first ? VK_ATTACHMENT_LOAD_OP_LOAD
-                                                  : i == 4     ? VK_ATTACHMENT_LOAD_OP_CLEAR
-                                                               : VK_ATTACHMENT_LOAD_OP_DONT_CARE,
+                                        .loadOp = !part->first          ? VK_ATTACHMENT_LOAD_OP_LOAD
+                                                  : images[i] == &g->id ? VK_ATTACHMENT_LOAD_OP_CLEAR
+                                                                        : VK_ATTACHMENT_LOAD_OP_DONT_CARE,
                                         .storeOp = VK_ATTACHMENT_STORE_OP_STORE};
     VkRenderingAttachmentInfo depth = {.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
                                        .imageView = g->depth.layer_views[eye],
@@ -329,7 +335,7 @@ static void draw_part(const struct gbuffer *g, VkCommandBuffer cmd, const struct
         gpu_barrier(cmd, tests, tests);
         depth.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
     }
-    info.colorAttachmentCount = TARGETS;
+    info.colorAttachmentCount = count;
     info.pColorAttachments = colours;
     vkCmdBeginRendering(cmd, &info);
     draw_buckets(g, cmd, draws, draw_counts, eye, part);
@@ -340,12 +346,9 @@ void gbuffer_record(const struct gbuffer *g, VkCommandBuffer cmd, const struct g
                     const struct gpu_buffer *draw_counts, enum gbuffer_extent extent, uint32_t source)
 {
     const struct gpu_image *images[TARGETS];
-    targets(g, images);
-    for (uint32_t i = 0; i < TARGETS; i++) {
-        if (images[i])
-            gpu_image_layout(cmd, images[i], VK_IMAGE_LAYOUT_UNDEFINED,
-                             VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
-    }
+    const uint32_t count = targets(g, images);
+    for (uint32_t i = 0; i < count; i++)
+        gpu_image_layout(cmd, images[i], VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
     gpu_image_layout(cmd, &g->depth, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
     const bool apart = extent == GBUFFER_MOVING_EVERYWHERE;
     const struct part drawn = {extent == GBUFFER_ALL ? VK_NULL_HANDLE : g->mask, true, !apart, true};
@@ -355,11 +358,9 @@ void gbuffer_record(const struct gbuffer *g, VkCommandBuffer cmd, const struct g
         if (apart)
             draw_part(g, cmd, draws, draw_counts, eye, source, &moving);
     }
-    for (uint32_t i = 0; i < TARGETS; i++) {
-        if (images[i])
-            gpu_image_layout(cmd, images[i], VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-                             VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
-    }
+    for (uint32_t i = 0; i < count; i++)
+        gpu_image_layout(cmd, images[i], VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                         VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     gpu_image_layout(cmd, &g->depth, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
                      VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL);
 }

@@ -17,7 +17,11 @@ layout(location = 2) out vec4 out_surface;
 layout(location = 3) out vec4 out_emissive;
 #endif
 #ifdef ID
+#ifdef EMISSIVE
 layout(location = 4) out uint out_id;
+#else
+layout(location = 3) out uint out_id; // no gap: an attachment that nothing writes is undefined
+#endif
 #endif
 
 void main()

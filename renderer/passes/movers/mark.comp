@@ -3,7 +3,9 @@
 #extension GL_GOOGLE_include_directive : require
 #include "renderer/shared/shared.h"
 
-// One work group a moving item and eye, in its turn: every pixel of the rectangles of its box now and a frame ago.
+// One work group a moving item and eye: the rectangles of its box now and a frame ago. A small one is marked whole in the
+// item's turn, so that it is seen whole however fast it moves. A large one is marked by tiles in their turns, the same as
+// those of moving pixels (passes/pyramid), so that no frame has all the work and no pixel is redrawn twice for it.
 
 layout(local_size_x = SHARED_TILE, local_size_y = SHARED_TILE) in;
 
@@ -17,8 +19,11 @@ layout(binding = 5, r8ui) uniform writeonly uimage2DArray redraw_map;
 layout(push_constant) uniform Push { uint count, turn, period, motion_count; } push;
 
 #include "renderer/shared/box.glsl"
+#include "renderer/shared/turn.glsl"
 
-void mark(rectangle r, uint eye)
+const float small = 1.0 / 64.0; // of the image: what a whole box may add to one frame
+
+void mark(rectangle r, uint eye, bool items_turn)
 {
     vec2 size = vec2(frame.width, frame.height);
     // a pixel more: half for the jitter, half for rounding
@@ -26,21 +31,29 @@ void mark(rectangle r, uint eye)
     if (!all(lessThan(low, size)) || !all(greaterThan(high, vec2(0.0))))
         return;
     ivec2 first = ivec2(clamp(low, vec2(0.0), size - 1.0)), last = ivec2(clamp(high, vec2(0.0), size - 1.0));
-    for (int y = first.y + int(gl_LocalInvocationID.y); y <= last.y; y += SHARED_TILE)
-        for (int x = first.x + int(gl_LocalInvocationID.x); x <= last.x; x += SHARED_TILE)
-            imageStore(redraw_map, ivec3(x, y, eye), uvec4(1u));
+    ivec2 extent = last - first + 1;
+    bool whole = float(extent.x) * float(extent.y) <= small * size.x * size.y;
+    if (whole && !items_turn)
+        return;
+    ivec2 start = first / SHARED_TILE * SHARED_TILE + ivec2(gl_LocalInvocationID.xy);
+    for (int y = start.y; y <= last.y; y += SHARED_TILE)
+        for (int x = start.x; x <= last.x; x += SHARED_TILE)
+            if (x >= first.x && y >= first.y &&
+                (whole || tile_has_turn(uint(x) / SHARED_TILE, frame.width, push.turn, push.period)))
+                imageStore(redraw_map, ivec3(x, y, eye), uvec4(1u));
 }
 
 void main()
 {
-    uint index = gl_WorkGroupID.x * push.period + push.turn, eye = gl_WorkGroupID.y;
+    uint index = gl_WorkGroupID.x, eye = gl_WorkGroupID.y;
     if (index >= push.count || frame.moving == 0u)
         return;
     shared_item item = items[moving[index]];
     shared_object object = objects[item.object];
     if (object.moved == 0u)
         return; // what the camera uncovers of it leaves holes, as of all that stands
+    bool items_turn = index % push.period == push.turn % push.period;
     mat4 clip = EYE(eye, clip_from_world);
-    mark(project(item, clip * object.world_from_mesh), eye);
-    mark(project(item, clip * motions[push.motion_count + object.moving_id] * object.world_from_mesh), eye);
+    mark(project(item, clip * object.world_from_mesh), eye, items_turn);
+    mark(project(item, clip * motions[push.motion_count + object.moving_id] * object.world_from_mesh), eye, items_turn);
 }

@@ -104,13 +104,12 @@ void movers_finish(struct movers *m)
 void movers_mark(const struct movers *m, VkCommandBuffer cmd, const struct gpu_image *redraw_map, uint32_t turn)
 {
     const VkImageSubresourceRange all = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 2};
-    const struct mark_push push = {m->item_count, turn % MOVERS_PERIOD, MOVERS_PERIOD, m->scene->motion_count};
+    const struct mark_push push = {m->item_count, turn, MOVERS_PERIOD, m->scene->motion_count};
     gpu_barrier(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
     vkCmdClearColorImage(cmd, redraw_map->image, VK_IMAGE_LAYOUT_GENERAL, &(VkClearColorValue){.uint32 = {0}},
                          1, &all);
     gpu_barrier(cmd, VK_PIPELINE_STAGE_2_CLEAR_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
-    gpu_dispatch(cmd, &m->mark, m->mark_set, &push, sizeof push,
-                 (m->item_count + MOVERS_PERIOD - 1) / MOVERS_PERIOD, 2, 1);
+    gpu_dispatch(cmd, &m->mark, m->mark_set, &push, sizeof push, m->item_count, 2, 1);
     gpu_barrier(cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
 }
 

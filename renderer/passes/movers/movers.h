@@ -1,9 +1,9 @@
 // Moving objects in a redraw map.
 //
-// movers_mark: the boxes of objects that moved lately, where they are and where they were, are redrawn in turns
-// of MOVERS_PERIOD frames, so that one that comes from behind a corner into the trusted periphery, where no
-// pixel of it is known yet, shows within that many frames. movers_join: after moving objects were drawn
-// everywhere, the kept pixels that they cover are redrawn ones.
+// movers_mark: the boxes of objects that moved lately, where they are and where they were, are redrawn in turns of
+// MOVERS_PERIOD frames, so that one that comes from behind a corner into the trusted periphery, where no pixel
+// of it is known yet, shows within that many frames; large ones tile by tile. movers_join: after moving objects
+// were drawn everywhere, the kept pixels that they cover are redrawn ones.
 #ifndef RENDERER_PASSES_MOVERS_MOVERS_H
 #define RENDERER_PASSES_MOVERS_MOVERS_H
 
@@ -34,7 +34,7 @@ struct movers_desc {
 
 bool movers_init(struct movers *movers, const struct movers_desc *desc);
 void movers_finish(struct movers *movers);
-// Writes the whole map: 1 in the boxes whose turn it is in frame `turn`, 0 elsewhere.
+// Writes the whole map: 1 in the boxes and tiles whose turn it is in frame `turn`, 0 elsewhere.
 void movers_mark(const struct movers *movers, VkCommandBuffer cmd, const struct gpu_image *redraw_map,
                  uint32_t turn);
 void movers_join(const struct movers *movers, VkCommandBuffer cmd, uint32_t source);

@@ -17,9 +17,10 @@ layout(binding = 2, r8ui) uniform uimage2DArray redraw_map;
 #include "renderer/passes/pyramid/confidence.glsl"
 
 #ifdef MOVING
+#include "renderer/shared/turn.glsl"
+
 // Whether it is the turn of the pixel's tile. c_e D^t falls under epsilon after P frames; a tile redraws its moving
-// pixels every P frames, in the turn of its strip, one of P across the image: so no frame has all the work, and what one
-// frame redraws lies together, where few submodels are (scattered tiles touch nearly all of them in every frame).
+// pixels every P frames.
 bool tiles_turn(ivec3 pixel)
 {
     if (push.dynamic_decay <= 0.0 || push.dynamic_decay >= 1.0 || push.epsilon <= 0.0)
@@ -29,8 +30,7 @@ bool tiles_turn(ivec3 pixel)
     if (confidence <= push.epsilon)
         return false; // redrawn anyway
     float period = floor(log(push.epsilon / confidence) / log(push.dynamic_decay)) + 1.0;
-    uint strip = uint(tile.x) * uint(period) / ((frame.width + SHARED_TILE - 1) / SHARED_TILE);
-    return period < 64.0 && (push.turn + strip) % uint(period) == 0u;
+    return period < 64.0 && tile_has_turn(uint(tile.x), frame.width, push.turn, uint(period));
 }
 
 bool moving_redrawn(ivec3 pixel)

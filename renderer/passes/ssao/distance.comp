@@ -13,10 +13,10 @@ layout(scalar, binding = 0) uniform Frame { shared_frame frame; };
 #include "renderer/shared/eye.glsl"
 layout(binding = 1, r32f) uniform writeonly image2DArray distances;
 #ifdef REDRAW
-layout(binding = 2, rgba32f) uniform readonly image2DArray position_image; // composed
-#else
-layout(binding = 3) uniform sampler2DArray depth_image;
+layout(binding = 2, rgba32f) uniform readonly image2DArray position_image;
+layout(binding = 4, r8ui) uniform readonly uimage2DArray redraw_map;
 #endif
+layout(binding = 3) uniform sampler2DArray depth_image;
 
 void main()
 {
@@ -24,10 +24,13 @@ void main()
     if (any(greaterThanEqual(to.xy, imageSize(distances).xy)))
         return;
     ivec3 pixel = ivec3(2 * to.xy, to.z);
+    float depth;
 #ifdef REDRAW
-    float depth = kept_depth(EYE(uint(to.z), forward), imageLoad(position_image, pixel), frame.near_m);
-#else
-    float depth = texelFetch(depth_image, pixel, 0).x;
+    // a redrawn pixel has a position too, but it was rounded in the world, and slopes of 1e-5 m show
+    if (imageLoad(redraw_map, pixel).x == 0u)
+        depth = kept_depth(EYE(uint(to.z), forward), imageLoad(position_image, pixel), frame.near_m);
+    else
 #endif
+        depth = texelFetch(depth_image, pixel, 0).x;
     imageStore(distances, to, vec4(depth > 0.0 ? frame.near_m / depth : 0.0));
 }

@@ -68,14 +68,16 @@ static bool create_distances(struct ssao *s, const struct ssao_desc *desc)
     const struct gpu_binding bindings[] = {{.type = UNIFORM},
                                            {.type = IMAGE},
                                            {.type = IMAGE, .absent = !redraw},
-                                           {.type = SAMPLED, .absent = redraw}};
+                                           {.type = SAMPLED},
+                                           {.type = IMAGE, .absent = !redraw}};
     const struct gpu_code code = redraw ? (struct gpu_code){distance_comp_redraw, sizeof distance_comp_redraw}
                                         : (struct gpu_code){distance_comp, sizeof distance_comp};
     struct gpu_resource resources[] = {
         {.buffer = desc->frame},
         {.view = s->distance.view},
         {.view = desc->position[0]},
-        {.view = desc->depth, .sampler = s->sampler, .layout = VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL}};
+        {.view = desc->depth, .sampler = s->sampler, .layout = VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL},
+        {.view = desc->redraw_map}};
     if (!create_kernel(s, "half-resolution distances", code, bindings, resources, countof(bindings),
                        &s->distances, &s->distance_sets[0]))
         return false;

@@ -25,8 +25,9 @@ struct ssao_desc {
     struct gpu *gpu;
     const struct gpu_buffer *frame;
     uint32_t width, height;           // full resolution
-    VkImageView depth;                // of the G-buffer, DEPTH_READ_ONLY_OPTIMAL; null with a redraw map, and:
-    VkImageView position[2];          // rgba32f, GENERAL, composed
+    VkImageView depth;                // of the G-buffer, DEPTH_READ_ONLY_OPTIMAL
+    VkImageView redraw_map;           // null: every pixel is drawn; else also:
+    VkImageView position[2];          // rgba32f, GENERAL, of the kept pixels
     const struct gpu_buffer *pyramid; // of the redraw map (passes/redraw), and its shape
     uint32_t tiles_x, tiles_y;
 };
