@@ -101,7 +101,7 @@ static void check_pyramid(const struct bed *b)
 {
     uint32_t at = 0, width = 0, height = 0;
     for (uint32_t level = 0; level < b->pass.levels; level++) {
-        const uint32_t side = SHARED_TILE << level;
+        const uint32_t side = (uint32_t)SHARED_TILE << level;
         width = b->pass.tiles_x >> level ? b->pass.tiles_x >> level : 1;
         height = b->pass.tiles_y >> level ? b->pass.tiles_y >> level : 1;
         assert_true(width * side >= b->width && height * side >= b->height);
