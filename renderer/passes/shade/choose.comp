@@ -36,11 +36,11 @@ bool beyond(uvec2 block, uint size, uint eye, float limit_deg)
     return view_eccentricity_deg(EYE(eye, gaze), ray) > limit_deg;
 }
 
-// Those of a 4x4 block that lie in coarse 2x2 blocks.
-uint in_twos(uvec2 block, uint eye)
+// Those of a 4x4 block that are in coarse blocks: all, if it is one itself (`whole`), or those of its 2x2 blocks that are.
+uint in_coarse(uvec2 block, uint eye, bool whole)
 {
-    uint mask = 0u;
-    for (uint i = 0u; i < 4u; i++) {
+    uint mask = whole ? 0xffffu : 0u;
+    for (uint i = whole ? 4u : 0u; i < 4u; i++) { // the software driver leaves out a loop, but no branch
         uvec2 part = uvec2(i & 1u, i >> 1);
         if (beyond(2u * block + part, 2u, eye, push.inner_deg))
             mask |= 0x33u << 2u * part.x + 8u * part.y;
@@ -75,8 +75,8 @@ float slope(ivec3 pixel, float own, ivec3 way)
     return abs(up) < abs(down) ? up : down;
 }
 
-// Of `others`, those on the surface of pixel `leader`.
-uint same_surface(ivec3 corner, uint leader, uint others)
+// Of `others`, those on the surface of pixel `leader`; `words`: they follow it.
+uint same_surface(ivec3 corner, uint leader, uint others, inout uvec2 words)
 {
     ivec3 from = corner + ivec3(leader & 3u, leader >> 2, 0);
     vec3 normal = normal_at(from);
@@ -87,10 +87,12 @@ uint same_surface(ivec3 corner, uint leader, uint others)
         uint place = uint(findLSB(others));
         ivec3 to = corner + ivec3(place & 3u, place >> 2, 0);
         vec2 way = vec2(to.xy) - vec2(from.xy);
-        float other = depth_at(to), expected = depth + way.x * slopes.x + way.y * slopes.y;
+        float other = texelFetch(depth_image, to, 0).x, expected = depth + way.x * slopes.x + way.y * slopes.y;
         bool near = abs(other - expected) <= depth_tolerance * depth && dot(normal, normal_at(to)) >= least_cosine;
-        if (depth == 0.0 || other == 0.0 ? depth == other : near) // background has no normal
-            same |= 1u << place;
+        bool follows = depth == 0.0 || other == 0.0 ? depth == other : near; // background has no normal
+        uint change = follows ? (place ^ leader) << 4u * (place & 7u) : 0u;
+        words ^= place < 8u ? uvec2(change, 0u) : uvec2(0u, change);
+        same |= follows ? 1u << place : 0u;
     }
     return same;
 }
@@ -116,18 +118,13 @@ void main()
     uvec2 left = min(size - uvec2(corner.xy), 4u);
     uint inside = (0x1111u * ((1u << left.x) - 1u)) & ((1u << 4u * left.y) - 1u);
     bool whole = beyond(block, 4u, eye, push.outer_deg);
-    uint waiting = inside & (whole ? 0xffffu : in_twos(block, eye)), chosen = inside & ~waiting;
+    uint waiting = inside & in_coarse(block, eye, whole), chosen = inside & ~waiting;
     uvec2 words = leaders_alone;
     while (waiting != 0u) { // surface by surface
         uint leader = first_of(waiting, whole);
         uint others = waiting & (whole ? 0xffffu : 0x33u << (leader & 10u)) & ~(1u << leader);
-        uint same = same_surface(corner, leader, others);
         chosen |= 1u << leader;
-        waiting &= ~(same | 1u << leader);
-        for (; same != 0u; same &= same - 1u) {
-            uint place = uint(findLSB(same)), change = (place ^ leader) << 4u * (place & 7u);
-            words ^= place < 8u ? uvec2(change, 0u) : uvec2(0u, change);
-        }
+        waiting &= ~(same_surface(corner, leader, others, words) | 1u << leader);
     }
     uint word = leaders_word(block, eye, size);
     leaders[word] = words.x;
