@@ -76,7 +76,8 @@ static bool init_light(struct deferred *d, const struct deferred_desc *desc)
                                          .hdr = d->shade.hdr.view,
                                          .targets = {view_of(desc->colour[0]), view_of(desc->colour[1])},
                                          .redraw_map = view_of(desc->redraw_map),
-                                         .tiles = tiles};
+                                         .tiles = tiles,
+                                         .leaders = desc->blocks ? &d->shade.leaders : NULL};
     return tonemap_init(&d->tonemap, &tonemap);
 }
 
@@ -147,7 +148,7 @@ void deferred_explain(const struct deferred *d, const struct mode_setup *setup)
     if (d->has_ssao)
         mode_explain(e, ssao_memory(&d->ssao), "ambient occlusion of half resolution, because it is on");
     if (d->shade.gpu)
-        mode_explain(e, d->shade.hdr.bytes, "shaded colour, linear HDR, %u local lights",
+        mode_explain(e, shade_memory(&d->shade), "shaded colour, linear HDR, %u local lights",
                      setup->scene->scene->light_count);
     mode_explain(e, d->colour[0]->bytes + (d->colour[1] ? d->colour[1]->bytes : 0), "tone-mapped colour%s",
                  d->colour[1] ? " of this and the last frame" : "");

@@ -6,10 +6,16 @@ uint tile_code(uvec2 tile, uint eye)
     return tile.x | tile.y << 15 | eye << 30;
 }
 
-// The pixel of a work item in a coded tile; z is the eye.
+// The coded tile; z is the eye.
+ivec3 tile_of(uint code)
+{
+    return ivec3(code & 0x7fffu, code >> 15 & 0x7fffu, code >> 30);
+}
+
+// The pixel of a work item in a coded tile.
 ivec3 tile_pixel(uint code, uvec2 lane)
 {
-    return ivec3(SHARED_TILE * ivec2(code & 0x7fffu, code >> 15 & 0x7fffu) + ivec2(lane), code >> 30);
+    return tile_of(code) * ivec3(SHARED_TILE, SHARED_TILE, 1) + ivec3(lane, 0);
 }
 
 // Adds a tile to a list. More than 65535 groups, the least that every device allows in one dimension, make rows; the

@@ -5,7 +5,7 @@
 // block's leader is shaded whole and its colour goes to the block, so that textures become coarser with the
 // light, as in hardware.
 //
-// path=compute (shade/coarse.comp) runs anywhere over the full G-buffer. path=hardware shades forward with
+// path=compute (shade/choose.comp) runs anywhere over the full G-buffer. path=hardware shades forward with
 // VK_KHR_fragment_shading_rate. We differ from the paper in this:
 // - none of Patney's prefiltering and contrast enhancement, as in Franke's comparison;
 // - hardware: depths come first, at full rate and with the alpha test, which the paper's forward renderer left

@@ -5,6 +5,7 @@ layout(constant_id = 0) const bool has_emissive = false;
 layout(constant_id = 1) const bool has_occlusion = false;
 layout(constant_id = 2) const bool every_light = false; // no light lists: what they must equal
 layout(constant_id = 3) const bool has_shadow = false;
+layout(constant_id = 4) const uint light_words = 1u; // a tile's in `light_masks`
 
 layout(scalar, binding = 0) uniform Frame { shared_frame frame; };
 #include "renderer/shared/eye.glsl"
@@ -18,3 +19,11 @@ layout(binding = 7) uniform sampler2DArray emissive_image;
 layout(binding = 8) uniform sampler2DArray occlusion_image;
 layout(binding = 9) uniform sampler2DArray occlusion_distance;
 layout(binding = 10) uniform sampler2DArrayShadow shadow_map;
+layout(scalar, binding = 14) buffer LightMasks { uint light_masks[]; }; // a bit a light, `light_words` a tile
+
+// The first word of a pixel's tile in `light_masks`.
+uint light_mask_of(uvec3 pixel)
+{
+    uvec2 tiles = (uvec2(frame.width, frame.height) + SHARED_TILE - 1) / SHARED_TILE, tile = pixel.xy / SHARED_TILE;
+    return ((pixel.z * tiles.y + tile.y) * tiles.x + tile.x) * light_words;
+}

@@ -1,19 +1,16 @@
-// The light of one pixel of the G-buffer per work item. Needs shared.h, view.glsl and bindings.glsl.
+// The light of one pixel of the G-buffer. Needs shared.h, view.glsl and bindings.glsl.
 #include "renderer/shared/colour.glsl"
 #include "renderer/shared/normal.glsl"
 #include "renderer/shared/sun_shadow.glsl"
-#include "renderer/passes/shade/light_list.glsl"
 #include "renderer/passes/shade/lighting.glsl"
 #include "renderer/passes/shade/occlusion.glsl"
 
-// Every work item of a group calls it, `wanted` or not; `corner` is the upper left pixel of the tile that holds all
-// wanted pixels of the group.
-vec3 shade_pixel(ivec3 pixel, bool wanted, uvec2 corner)
+vec3 shade_pixel(ivec3 pixel)
 {
     vec3 ray = view_ray(EYE(uint(pixel.z), tangents), vec2(frame.width, frame.height), vec2(pixel.xy) + 0.5 - frame.jitter);
     mat4 world_from_eye = EYE(uint(pixel.z), world_from_eye);
     vec3 direction = mat3(world_from_eye) * ray;
-    float depth = wanted ? texelFetch(depth_image, pixel, 0).x : 0.0;
+    float depth = texelFetch(depth_image, pixel, 0).x;
     float distance = frame.near_m / depth;
     vec3 position = world_from_eye[3].xyz + direction * distance;
     bool lit = depth != 0.0;
@@ -30,21 +27,17 @@ vec3 shade_pixel(ivec3 pixel, bool wanted, uvec2 corner)
         if (has_shadow && sun != vec3(0.0))
             sun *= sun_share(shadow_map, position, s.normal);
         radiance = ambient(s, occlusion) + sun;
-    } else if (wanted) {
+    } else {
         radiance = sky(normalize(direction));
     }
     if (every_light) {
         for (uint i = 0u; lit && i < frame.light_count; i++)
             radiance += point_light(s, position, lights[i]);
-    } else if (frame.light_count != 0u) {
-        measure_tile(lit, distance);
-        for (uint first = 0u; first < frame.light_count && farthest_bits != 0u; first += light_chunk) {
-            list_lights(first, uint(pixel.z), corner);
-            uint left = min(light_chunk, frame.light_count - first);
-            for (uint word = 0u; lit && 32u * word < left; word++) {
-                for (uint bits = light_mask[word]; bits != 0u; bits &= bits - 1u)
-                    radiance += point_light(s, position, lights[first + 32u * word + uint(findLSB(bits))]);
-            }
+    } else {
+        uint first = light_mask_of(uvec3(pixel));
+        for (uint word = 0u; lit && 32u * word < frame.light_count; word++) {
+            for (uint bits = light_masks[first + word]; bits != 0u; bits &= bits - 1u)
+                radiance += point_light(s, position, lights[32u * word + uint(findLSB(bits))]);
         }
     }
     if (has_emissive && lit)

@@ -3,11 +3,12 @@
 #include "renderer/shared/shared.h"
 
 #include "tonemap.comp.h"
+#include "tonemap.comp_leaders.h"
 #include "tonemap.comp_redraw.h"
 
 #include <string.h>
 
-enum { REDRAW_MAP = 3, TILES = 4, BINDINGS };
+enum { REDRAW_MAP = 3, TILES = 4, LEADERS = 5, BINDINGS };
 
 static const struct gpu_binding all_bindings[BINDINGS] = {
     {.type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}, // frame
@@ -15,7 +16,16 @@ static const struct gpu_binding all_bindings[BINDINGS] = {
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},  // target
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},  // redraw map, where there is one
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // tiles of it
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, // leaders, where there are any
 };
+
+static struct gpu_code code_for(const struct tonemap_desc *desc)
+{
+    if (desc->leaders)
+        return (struct gpu_code){tonemap_comp_leaders, sizeof tonemap_comp_leaders};
+    return desc->redraw_map ? (struct gpu_code){tonemap_comp_redraw, sizeof tonemap_comp_redraw}
+                            : (struct gpu_code){tonemap_comp, sizeof tonemap_comp};
+}
 
 bool tonemap_init(struct tonemap *t, const struct tonemap_desc *desc)
 {
@@ -27,11 +37,9 @@ bool tonemap_init(struct tonemap *t, const struct tonemap_desc *desc)
     struct gpu_binding bindings[BINDINGS];
     memcpy(bindings, all_bindings, sizeof bindings);
     bindings[REDRAW_MAP].absent = bindings[TILES].absent = !desc->redraw_map;
-    const struct gpu_code code = desc->redraw_map
-                                     ? (struct gpu_code){tonemap_comp_redraw, sizeof tonemap_comp_redraw}
-                                     : (struct gpu_code){tonemap_comp, sizeof tonemap_comp};
+    bindings[LEADERS].absent = !desc->leaders;
     const struct gpu_kernel_desc kernel = {.name = "tonemap",
-                                           .code = code,
+                                           .code = code_for(desc),
                                            .bindings = bindings,
                                            .binding_count = countof(bindings),
                                            .push_bytes = desc->redraw_map ? sizeof(uint32_t) : 0};
@@ -42,7 +50,8 @@ bool tonemap_init(struct tonemap *t, const struct tonemap_desc *desc)
                                                  {.view = desc->hdr},
                                                  {.view = desc->targets[i]},
                                                  {.view = desc->redraw_map},
-                                                 {.buffer = desc->tiles ? desc->tiles : desc->frame}};
+                                                 {.buffer = desc->tiles ? desc->tiles : desc->frame},
+                                                 {.buffer = desc->leaders}};
         t->sets[i] = gpu_set_create(t->gpu, t->kernel.set_layout, bindings, resources, countof(bindings));
         if (!t->sets[i])
             return false;

@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "renderer/shared/shared.h"
 #include "renderer/shared/colour.glsl"
+#include "renderer/shared/leaders.glsl"
 #include "renderer/shared/tiles.glsl"
 
 layout(local_size_x = SHARED_TILE, local_size_y = SHARED_TILE) in;
@@ -14,6 +15,9 @@ layout(binding = 2, rgba8) uniform writeonly image2DArray target;
 layout(binding = 3, r8ui) uniform readonly uimage2DArray redraw_map;
 layout(scalar, binding = 4) readonly buffer Tiles { uint tiles[]; };
 layout(push_constant) uniform Push { uint listed; } push;
+#endif
+#ifdef LEADERS
+layout(scalar, binding = 5) readonly buffer Leaders { uint leaders[]; };
 #endif
 
 void main()
@@ -33,7 +37,12 @@ void main()
     if (imageLoad(redraw_map, pixel).x == 0u)
         return;
 #endif
-    vec3 scaled = imageLoad(hdr, pixel).rgb * frame.exposure;
+    ivec3 from = pixel;
+#ifdef LEADERS
+    uint word = leaders_word(uvec2(pixel.xy) / 4u, uint(pixel.z), uvec2(frame.width, frame.height));
+    from = leaders_pixel(leaders[word + uint(pixel.y >> 1 & 1)], pixel);
+#endif
+    vec3 scaled = imageLoad(hdr, from).rgb * frame.exposure;
     vec3 display = scaled / (1.0 + colour_luminance(scaled));
     imageStore(target, pixel, vec4(colour_encode(clamp(display, 0.0, 1.0)), 1.0));
 }
