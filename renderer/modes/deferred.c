@@ -148,8 +148,9 @@ void deferred_explain(const struct deferred *d, const struct mode_setup *setup)
     if (d->has_ssao)
         mode_explain(e, ssao_memory(&d->ssao), "ambient occlusion of half resolution, because it is on");
     if (d->shade.gpu)
-        mode_explain(e, shade_memory(&d->shade), "shaded colour, linear HDR, %u local lights",
-                     setup->scene->scene->light_count);
+        mode_explain(
+            e, shade_memory(&d->shade), "shaded colour, linear HDR%s, %u local lights in masks by tile",
+            d->shade.blocks ? " of the pixels that lead others" : "", setup->scene->scene->light_count);
     mode_explain(e, d->colour[0]->bytes + (d->colour[1] ? d->colour[1]->bytes : 0), "tone-mapped colour%s",
                  d->colour[1] ? " of this and the last frame" : "");
     if (d->has_taa)

@@ -8,10 +8,10 @@
 #include "renderer/shared/view.glsl"
 #include "renderer/passes/shade/bindings.glsl"
 
-// Chooses the pixels to shade: every pixel up to `inner_deg` from the gaze, one of each 2x2 block up to `outer_deg`, one
-// of each 4x4 block beyond, by the block's centre: as hardware does (VK_KHR_fragment_shading_rate), but in compute, where
-// it does not reach. Like hardware, which shades a block once for every primitive in it, a block is shaded once for
-// every surface in it. The chosen go to one list, so that the work items that shade lie side by side.
+// Chooses the pixels to shade: every pixel up to `inner_deg` from the gaze, one of each 2x2 block up to `outer_deg`,
+// one of each 4x4 block beyond, by the block's centre: as hardware does (VK_KHR_fragment_shading_rate), but in compute,
+// where it does not reach. Like hardware, which shades a block once for every primitive in it, a block is shaded once
+// for every surface in it. The chosen go to one list, so that the work items that shade lie side by side.
 //
 // One invocation for 4x4 pixels, without barriers (see passes/redraw/count.comp). Sets of pixels are masks, a bit a
 // place (leaders.glsl).
@@ -36,7 +36,7 @@ bool beyond(uvec2 block, uint size, uint eye, float limit_deg)
     return view_eccentricity_deg(EYE(eye, gaze), ray) > limit_deg;
 }
 
-// Those of a 4x4 block that are in coarse blocks: all, if it is one itself (`whole`), or those of its 2x2 blocks that are.
+// Those of a 4x4 block that are in coarse blocks: all if it is one itself (`whole`), else its 2x2 blocks that are.
 uint in_coarse(uvec2 block, uint eye, bool whole)
 {
     uint mask = whole ? 0xffffu : 0u;
@@ -99,7 +99,8 @@ uint same_surface(ivec3 corner, uint leader, uint others, inout uvec2 words)
 
 void append(uint chosen, ivec3 corner)
 {
-    uint count = uint(bitCount(chosen)), slot = atomicAdd(list[SHARED_TILES_FIRST - 1], count), groups = (slot + count + 63u) / 64u;
+    uint count = uint(bitCount(chosen)), slot = atomicAdd(list[SHARED_TILES_FIRST - 1], count);
+    uint groups = (slot + count + 63u) / 64u;
     atomicMax(list[0], min(groups, 65535u)); // rows, as in tiles.glsl
     atomicMax(list[1], (groups - 1u) / 65535u + 1u);
     for (uint at = SHARED_TILES_FIRST + slot; chosen != 0u; chosen &= chosen - 1u, at++) {

@@ -23,8 +23,8 @@ struct tonemap_desc {
     VkImageView targets[2];         // rgba8; the second may be null
     VkImageView redraw_map;         // null: every pixel is written
     const struct gpu_buffer *tiles; // of the redraw map (tiles.glsl); NULL: tonemap_record_tiles is not used
-    const struct gpu_buffer
-        *leaders; // whose HDR colour a pixel has (leaders.glsl), not with a redraw map; NULL: its own
+    // Whose HDR colour a pixel has (leaders.glsl), not with a redraw map; NULL: its own.
+    const struct gpu_buffer *leaders;
 };
 
 bool tonemap_init(struct tonemap *tonemap, const struct tonemap_desc *desc);

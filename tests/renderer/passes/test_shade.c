@@ -1,5 +1,5 @@
-// Shading: what the lists of lights and tiles leave out is nothing, and occlusion darkens the sky's light
-// alone.
+// Shading: what the lists of lights and tiles leave out is nothing, blocks are shaded by their leaders, and
+// occlusion darkens the sky's light alone.
 #include "renderer/passes/shade/shade.h"
 #include "renderer/passes/tonemap/tonemap.h"
 #include "tests/renderer/passes/rig.h"
@@ -13,6 +13,7 @@
 #include <cmocka.h>
 
 enum { WIDTH = 44, HEIGHT = 37, PIXELS = 2 * WIDTH * HEIGHT, LIGHTS = 1500, TILES_X = 6, TILES_Y = 5 };
+enum { BLOCKS_X = 11, BLOCKS_Y = 10 };
 enum { HALF_WIDTH = 22, HALF_HEIGHT = 19, HALVES = 2 * HALF_WIDTH * HALF_HEIGHT };
 
 struct bed {
@@ -238,6 +239,64 @@ static void a_list_of_tiles_is_the_redraw_map(void **state)
     bed_close(b);
 }
 
+static uint32_t pixel_at(uint32_t x, uint32_t y, uint32_t eye)
+{
+    return (eye * HEIGHT + y) * WIDTH + x;
+}
+
+// The pixel that shades for one, by leaders.glsl.
+static uint32_t leader_of(const uint32_t *leaders, uint32_t x, uint32_t y, uint32_t eye)
+{
+    const uint32_t block = (eye * BLOCKS_Y + y / 4) * BLOCKS_X + x / 4;
+    const uint32_t place = leaders[2 * block + (y % 4) / 2] >> (4 * (y % 2 * 4 + x % 4)) & 15;
+    return pixel_at(x - x % 4 + place % 4, y - y % 4 + place / 4, eye);
+}
+
+// With blocks: no pixel is listed twice, those listed are shaded as without blocks, and everyone's leader is
+// one.
+static void leaders_are_shaded_once_and_whole(void **state)
+{
+    (void)state;
+    static uint32_t list[SHARED_TILES_FIRST + PIXELS], leaders[2 * EYES * BLOCKS_X * BLOCKS_Y];
+    static bool listed[PIXELS];
+    struct bed *b = calloc(1, sizeof *b);
+    bed_open(b, 11, 2, 2.001);
+    scatter_lights(b, 3);
+    fill_frame(b, 100, 1, 1);
+    struct shade_desc desc = desc_of(b);
+    shade_into(b, &desc, false, b->first);
+    struct shared_counters *counters = b->rig.counters.mapped;
+    counters->shaded_px = 0;
+    desc.blocks = &(struct shade_blocks){&b->rig.counters, 10, 20};
+    struct shade pass;
+    assert_true(shade_init(&pass, &desc));
+    VkCommandBuffer cmd = rig_begin(&b->rig);
+    shade_record(&pass, cmd);
+    rig_end(&b->rig, cmd);
+    rig_read_level(&b->rig, &pass.hdr, 0, b->second[0]);
+    rig_read_words(&b->rig, &pass.chosen, countof(list), list);
+    rig_read_words(&b->rig, &pass.leaders, countof(leaders), leaders);
+    shade_finish(&pass);
+    const uint32_t count = list[SHARED_TILES_FIRST - 1];
+    assert_true(count > PIXELS / 8 && count < PIXELS * 3 / 4);
+    assert_int_equal(counters->shaded_px, count);
+    assert_int_equal(list[0], (count + 63) / 64);
+    assert_int_equal(list[1], 1);
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t code = list[SHARED_TILES_FIRST + i];
+        const uint32_t pixel = pixel_at(code & 0x7fff, code >> 15 & 0x7fff, code >> 30);
+        assert_true(pixel < PIXELS && !listed[pixel]);
+        listed[pixel] = true;
+        assert_memory_equal(b->first[pixel], b->second[pixel], sizeof b->first[pixel]);
+    }
+    for (uint32_t i = 0; i < PIXELS; i++) {
+        const uint32_t leader = leader_of(leaders, i % WIDTH, i / WIDTH % HEIGHT, i / (WIDTH * HEIGHT));
+        assert_true(leader < PIXELS && listed[leader] && (leader == i || !listed[i]));
+        assert_true((b->depth[leader] == 0) == (b->depth[i] == 0));
+    }
+    bed_close(b);
+}
+
 static void shade_occluded(struct bed *b, const uint8_t *occlusion, const float *distance, float (*out)[4])
 {
     struct gpu_image ao = rig_sampled(&b->rig, VK_FORMAT_R8_UNORM, HALF_WIDTH, HALF_HEIGHT, 1, occlusion,
@@ -318,6 +377,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(light_lists_lose_no_light),
         cmocka_unit_test(a_list_of_tiles_is_the_redraw_map),
+        cmocka_unit_test(leaders_are_shaded_once_and_whole),
         cmocka_unit_test(occlusion_takes_the_sky_s_light_only),
         cmocka_unit_test(occlusion_stays_on_its_side_of_an_edge),
     };
