@@ -74,7 +74,7 @@ static bool measure_scene(const struct request *r, const struct scene *scene, co
                                             .gaze = &r->gazes[z],
                                             .frames_csv = files[FILE_FRAMES].file,
                                             .progress_name = progress};
-            snprintf(progress, sizeof progress, "%s %ux%u %s", name, desc.size.width, desc.size.height,
+            snprintf(progress, sizeof progress, "%.256s %ux%u %.64s", name, desc.size.width, desc.size.height,
                      desc.gaze->text);
             if (!group_measure(&desc, rows))
                 return false;

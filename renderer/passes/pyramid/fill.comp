@@ -47,6 +47,24 @@ vec4 level_value(ivec3 pixel, int m, out float depth)
     return sum / weights; // the texel over the pixel weighs at least 1/4
 }
 
+void fill(ivec3 pixel)
+{
+    vec4 filled = vec4(0.0);
+    float depth = 0.0;
+    int m = 0;
+    while (filled.a == 0.0 && m < int(push.levels))
+        filled = level_value(pixel, ++m, depth);
+    // c_e c_c c_s(m)
+    float confidence =
+        eccentricity_confidence(pixel, vec2(pixel.xy) + 0.5) * filled.a * pow(push.hole_decay, float(m));
+    if (confidence < push.epsilon) {
+        imageStore(redraw_map, pixel, uvec4(1u));
+    } else {
+        imageStore(colour, pixel, vec4(filled.rgb, 1.0));
+        imageStore(position, pixel, vec4(depth, 0.0, 0.0, 0.0)); // still a hole; its depth is for smoothing
+    }
+}
+
 void main()
 {
     ivec3 pixel = ivec3(gl_GlobalInvocationID);
@@ -58,20 +76,7 @@ void main()
     }
     if (pixel.x >= int(frame.width) || pixel.y >= int(frame.height))
         return;
-    if (imageLoad(redraw_map, pixel).x != 0u || imageLoad(position, pixel).w != 0.0)
-        return;
-    vec4 filled = vec4(0.0);
-    float depth = 0.0;
-    int m = 0;
-    while (filled.a == 0.0 && m < int(push.levels))
-        filled = level_value(pixel, ++m, depth);
-    // c_e c_c c_s(m)
-    float confidence =
-        eccentricity_confidence(pixel, vec2(pixel.xy) + 0.5) * filled.a * pow(push.hole_decay, float(m));
-    if (confidence < push.epsilon) {
-        imageStore(redraw_map, pixel, uvec4(1u));
-        return;
-    }
-    imageStore(colour, pixel, vec4(filled.rgb, 1.0));
-    imageStore(position, pixel, vec4(depth, 0.0, 0.0, 0.0)); // still a hole; its depth is for smoothing
+    bool hole = imageLoad(redraw_map, pixel).x == 0u && imageLoad(position, pixel).w == 0.0;
+    for (; hole; hole = false) // the software driver leaves out a loop that no lane enters, but no branch
+        fill(pixel);
 }

@@ -61,28 +61,32 @@ bool was_gap(ivec3 a, ivec3 b, int part, int whole)
     return false;
 }
 
-bool shows_through(ivec3 pixel)
+const ivec2 across[4] = ivec2[4](ivec2(1, 0), ivec2(0, 1), ivec2(1, 1), ivec2(1, -1));
+
+// The greatest depth of the pixels up to REACH away; near the image's edge a value that says nothing.
+float nearest_along(ivec3 pixel, ivec2 direction)
 {
-    const ivec2 across[4] = ivec2[4](ivec2(1, 0), ivec2(0, 1), ivec2(1, 1), ivec2(1, -1));
-    float nearer = max(1.1 * depth_at(pixel), 1e-36);
     ivec2 rest = min(pixel.xy, ivec2(frame.width, frame.height) - 1 - pixel.xy);
-    if (min(rest.x, rest.y) >= REACH) { // plain loads tell soonest that most pixels have nothing nearer on both sides
-        float nearest[4] = float[4](0.0, 0.0, 0.0, 0.0);
-        for (int k = 0; k < 4; k++)
-            for (int i = 1; i <= REACH; i++)
-                nearest[k] = max(nearest[k], depth_at(pixel + ivec3(i * across[k], 0)));
-        if (max(max(nearest[0], nearest[1]), max(nearest[2], nearest[3])) <= nearer)
-            return false;
-        bool pair = false;
-        for (int k = 0; k < 4; k++) {
-            float other = 0.0;
-            for (int i = 1; i <= REACH; i++)
-                other = max(other, depth_at(pixel - ivec3(i * across[k], 0)));
-            pair = pair || min(nearest[k], other) > nearer;
-        }
-        if (!pair)
-            return false;
+    float nearest = min(rest.x, rest.y) < REACH ? 2.0 : 0.0;
+    for (int i = 1; i <= REACH && nearest < 2.0; i++)
+        nearest = max(nearest, depth_at(pixel + ivec3(i * direction, 0)));
+    return nearest;
+}
+
+// Plain loads tell soonest that most pixels have nothing nearer on both sides.
+bool may_show_through(ivec3 pixel, float nearer)
+{
+    bool pair = false;
+    for (int k = 0; k < 4; k++) {
+        bool one = nearest_along(pixel, across[k]) > nearer;
+        for (; one; one = false)
+            pair = pair || nearest_along(pixel, -across[k]) > nearer;
     }
+    return pair;
+}
+
+bool shows_through(ivec3 pixel, float nearer)
+{
     for (int k = 0; k < 4; k++) {
         int i = next_nearer(pixel, across[k], nearer);
         int j = i > 0 ? next_nearer(pixel, -across[k], nearer) : 0;
@@ -90,6 +94,12 @@ bool shows_through(ivec3 pixel)
             return true;
     }
     return false;
+}
+
+void remove(ivec3 pixel)
+{
+    imageStore(position_to, pixel, vec4(0.0));
+    imageStore(colour_to, pixel, vec4(0.0));
 }
 
 void main()
@@ -100,8 +110,10 @@ void main()
     ivec3 pixel = tile_pixel(tiles[SHARED_TILES_FIRST + index], gl_LocalInvocationID.xy);
     if (pixel.x >= int(frame.width) || pixel.y >= int(frame.height))
         return;
-    if (source_at(pixel) != 0u && shows_through(pixel)) {
-        imageStore(position_to, pixel, vec4(0.0));
-        imageStore(colour_to, pixel, vec4(0.0));
+    float nearer = max(1.1 * depth_at(pixel), 1e-36);
+    bool candidate = source_at(pixel) != 0u && may_show_through(pixel, nearer);
+    for (; candidate; candidate = false) { // the software driver leaves out a loop that no lane enters, but no branch
+        if (shows_through(pixel, nearer))
+            remove(pixel);
     }
 }
