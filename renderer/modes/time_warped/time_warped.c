@@ -16,8 +16,8 @@
 // - the pyramid ends where A^m < epsilon, since deeper holes are redrawn whatever their colour;
 // - the or-pyramid of the redraw map begins at 8x8 pixels, and a box is looked up in 8x8 of its texels, not
 // 2x2;
-// - moving pixels are redrawn by whole tiles in turn, every as many frames as D^t needs to fall under epsilon,
-// and
+// - moving pixels are redrawn in turns of strips of tiles, every as many frames as D^t needs to fall under
+// epsilon, and
 //   moving objects' boxes every six frames (movers.h);
 // - the age t of a moving object's pixel counts to 63, so with D above epsilon^(1/63), 0.975 at epsilon 0.2,
 //   age alone never redraws it.

@@ -4,7 +4,7 @@
 #include "renderer/shared/shared.h"
 
 // One work group a moving item and eye: the rectangles of its box now and a frame ago. A small one is marked whole in the
-// item's turn, so that it is seen whole however fast it moves. A large one is marked by tiles in their turns, the same as
+// item's turn, so that it is seen whole however fast it moves. A large one is marked by strips of tiles in their turns, the same as
 // those of moving pixels (passes/pyramid), so that no frame has all the work and no pixel is redrawn twice for it.
 
 layout(local_size_x = SHARED_TILE, local_size_y = SHARED_TILE) in;

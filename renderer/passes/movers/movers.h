@@ -2,7 +2,7 @@
 //
 // movers_mark: the boxes of objects that moved lately, where they are and where they were, are redrawn in turns
 // of MOVERS_PERIOD frames, so that one that comes from behind a corner into the trusted periphery, where no
-// pixel of it is known yet, shows within that many frames; large ones tile by tile. movers_join: after moving
+// pixel of it is known yet, shows within that many frames; large ones strip by strip. movers_join: after moving
 // objects were drawn everywhere, the kept pixels that they cover are redrawn ones.
 #ifndef RENDERER_PASSES_MOVERS_MOVERS_H
 #define RENDERER_PASSES_MOVERS_MOVERS_H

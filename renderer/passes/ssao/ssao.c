@@ -46,7 +46,7 @@ static bool create_images(struct ssao *s)
     return gpu_image_create(s->gpu, &image, &s->shown);
 }
 
-// One kernel and its set (or two, where `second` is given) from up to five resources.
+// One kernel and its descriptor set.
 static bool create_kernel(struct ssao *s, const char *name, struct gpu_code code,
                           const struct gpu_binding *bindings, const struct gpu_resource *resources,
                           uint32_t count, struct gpu_kernel *out, VkDescriptorSet *out_set)
