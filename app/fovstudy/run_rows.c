@@ -79,7 +79,7 @@ static void fill_trials(const struct plan *plan, struct store_condition *conditi
         trials[i] = (struct store_trial){
             .ordinal = trial->ordinal,
             .block = plan->protocol->blocks[trial->block].name,
-            .kind = protocol_kind_name(trial->kind),
+            .kind = plan_trial_kind(trial),
             .scene = trial->scene,
             .settings = trial->settings,
             .factors = trial->factors,

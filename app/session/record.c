@@ -57,7 +57,7 @@ static enum recorder_result start_trial(struct recorder *recorder, const struct 
     char details[256];
     snprintf(details, sizeof details,
              "\"trial\":%" PRIu32 ",\"attempt\":%" PRId64 ",\"of\":%" PRIu32 ",\"kind\":\"%s\"", trial->ordinal,
-             attempt, recorder->plan->trial_count, protocol_kind_name(trial->kind));
+             attempt, recorder->plan->trial_count, plan_trial_kind(trial));
     return finish(recorder, "trial", record, details, error, error_size);
 }
 

@@ -1,44 +1,16 @@
-// How each thing is drawn. Every stream is Philox keyed by SHA-256(tag, protocol hash, seed) and named
-// (purpose, subject, block), so no draw moves another.
-//
-//   scenes  ALTERNATE: one draw per study and block gives each trial of the block (cell x repetition) a first
-//   scene, each
-//           scene as often as any other within one, in the whole and in every factor level; participant n has
-//           the scene n places further in the list. Each cell's scene so alternates over participants. RANDOM:
-//           participants are taken in runs as long as the list of scenes (times the options for a rating); a
-//           run shares one random permutation of all combinations, and each participant takes one.
-//   sides   one draw per four participants 4j..4j+3 (subject j) gives each trial its side and first-shown
-//   option, balanced as
-//           balance.h says over block, factor levels, scenes and cells. The four take the reflections (side,
-//           first) ^ (0,0), (0,1), (1,1), (1,0): in this order each scene of a cell, which alternates, meets
-//           both sides and both first-shown options.
-//   order   one permutation per participant and block.
-//   rating  which option is rated first: with the scene, above. A complement takes the same scene and the other
-//   option. seeds   one 63-bit word per participant and trial.
+// A participant's trials put together from what draw.c drew.
 #include "studies/engine/plan.h"
 
-#include "studies/engine/balance.h"
+#include "studies/engine/draw.h"
 #include "studies/protocol/text.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum purpose { PURPOSE_SCENES = 1, PURPOSE_SIDES, PURPOSE_ORDER, PURPOSE_RUN, PURPOSE_SEED };
-
-// What is drawn for one block.
-struct draw {
-    uint32_t count;
-    uint32_t scene[PROTOCOL_TRIALS]; // indices into protocol.scenes
-    uint32_t
-        pair[PROTOCOL_TRIALS]; // bit 0: the tested option is in slot b; bit 1: the reference is shown first
-    uint32_t order[PROTOCOL_TRIALS]; // which trial of the block comes at each place
-    uint32_t option;                 // of a rating: 0 or 1 into block.options
-    uint32_t excess;
-};
-
 struct maker {
     struct plan *plan;
-    uint64_t key;
+    struct draw_person person;
     struct draw *draws; // one per block
 };
 
@@ -47,135 +19,9 @@ const char *plan_slot_name(enum plan_slot slot)
     return slot == PLAN_SLOT_A ? "a" : slot == PLAN_SLOT_B ? "b" : NULL;
 }
 
-static uint64_t plan_key(const struct protocol *protocol, uint64_t seed)
+const char *plan_trial_kind(const struct plan_trial *trial)
 {
-    static const char tag[16] = "fovstudy plan 1"; // a change of any rule above changes the tag
-    uint8_t bytes[sizeof tag + SHA256_BYTES + 8], digest[SHA256_BYTES];
-    memcpy(bytes, tag, sizeof tag);
-    memcpy(bytes + sizeof tag, protocol->sha256, SHA256_BYTES);
-    for (unsigned i = 0; i < 8; i++)
-        bytes[sizeof tag + SHA256_BYTES + i] = (uint8_t)(seed >> (8 * i));
-    sha256(bytes, sizeof bytes, digest);
-    uint64_t key = 0;
-    for (unsigned i = 0; i < 8; i++)
-        key |= (uint64_t)digest[i] << (8 * i);
-    return key;
-}
-
-// Level of a factor in a cell; the last factor changes fastest.
-static uint32_t cell_level(const struct protocol_block *block, uint32_t cell, uint32_t factor)
-{
-    for (uint32_t i = block->factor_count - 1; i > factor; i--)
-        cell /= block->factors[i].level_count;
-    return cell % block->factors[factor].level_count;
-}
-
-// Groups of the block, its factor levels and, where cells repeat, its cells. `levels`: the weight of a factor's
-// levels.
-static void design_block(const struct protocol_block *block, uint32_t levels, struct balance_design *design)
-{
-    uint32_t key[PROTOCOL_TRIALS] = {0};
-    *design = (struct balance_design){.trials = protocol_block_trials(block)};
-    uint32_t cells = design->trials / block->repetitions;
-    balance_group(design, key, 1, BALANCE_MUST);
-    for (uint32_t f = 0; f < block->factor_count; f++) {
-        for (uint32_t i = 0; i < design->trials; i++)
-            key[i] = design->digit[i][f] = (uint16_t)cell_level(block, i / block->repetitions, f);
-        design->levels[f] = block->factors[f].level_count;
-        balance_group(design, key, design->levels[f], levels);
-    }
-    design->digits = block->factor_count;
-    if (design->digits == 0) { // listed trials
-        for (uint32_t i = 0; i < design->trials; i++)
-            design->digit[i][0] = (uint16_t)(i / block->repetitions);
-        design->levels[design->digits++] = cells;
-    }
-    for (uint32_t i = 0; i < design->trials; i++) {
-        design->digit[i][design->digits] = (uint16_t)(i % block->repetitions);
-        key[i] = i / block->repetitions;
-    }
-    design->levels[design->digits++] = block->repetitions;
-    if (block->repetitions > 1)
-        balance_group(design, key, cells, BALANCE_SHOULD);
-}
-
-// One of `length` combinations, each once in every run of `length` participants.
-static uint32_t draw_run(const struct maker *maker, uint32_t block, uint32_t length)
-{
-    uint32_t combination[PROTOCOL_SCENES * 2];
-    struct random_stream stream = random_stream(maker->key, PURPOSE_RUN, maker->plan->number / length, block);
-    for (uint32_t i = 0; i < length; i++)
-        combination[i] = i;
-    random_shuffle(&stream, combination, length);
-    return combination[maker->plan->number % length];
-}
-
-static void draw_rating(const struct maker *maker, uint32_t index, struct draw *draw)
-{
-    const struct protocol_block *block = &maker->plan->protocol->blocks[index];
-    draw->count = 1;
-    if (block->complement_of >= 0) {
-        const struct draw *earlier = &maker->draws[block->complement_of];
-        draw->scene[0] = earlier->scene[0];
-        draw->option = 1 - earlier->option;
-        return;
-    }
-    uint32_t taken = draw_run(maker, index, block->scene_count * block->option_count);
-    draw->option = taken / block->scene_count;
-    uint32_t scene = taken % block->scene_count;
-    if (block->scene_use ==
-        PROTOCOL_ALTERNATE) { // scenes in turn; the options still come as drawn within a run
-        struct random_stream stream = random_stream(maker->key, PURPOSE_SCENES, 0, index);
-        scene = (random_below(&stream, block->scene_count) + maker->plan->number) % block->scene_count;
-    }
-    draw->scene[0] = block->scenes[scene];
-}
-
-static void draw_scenes(const struct maker *maker, uint32_t index, const struct balance_design *design,
-                        struct draw *draw, uint32_t *out_first)
-{
-    const struct protocol_block *block = &maker->plan->protocol->blocks[index];
-    uint32_t turn = maker->plan->number % block->scene_count;
-    memset(out_first, 0, design->trials * sizeof *out_first);
-    if (block->scene_use == PROTOCOL_RANDOM) {
-        turn = draw_run(maker, index, block->scene_count);
-    } else {
-        struct random_stream stream = random_stream(maker->key, PURPOSE_SCENES, 0, index);
-        draw->excess += balance_classes(design, &stream, block->scene_count, out_first);
-    }
-    for (uint32_t i = 0; i < design->trials; i++) {
-        int32_t listed = block->trials ? block->trials[i / block->repetitions].scene : -1;
-        draw->scene[i] =
-            listed >= 0 ? (uint32_t)listed : block->scenes[(out_first[i] + turn) % block->scene_count];
-    }
-}
-
-static void draw_toggle(const struct maker *maker, uint32_t index, struct draw *draw)
-{
-    static const uint32_t reflections[4] = {0, 2, 3, 1};
-    const struct protocol_block *block = &maker->plan->protocol->blocks[index];
-    uint32_t number = maker->plan->number;
-    struct balance_design design;
-    uint32_t first_scene[PROTOCOL_TRIALS];
-    design_block(block, BALANCE_SHOULD, &design);
-    draw->count = design.trials;
-    draw_scenes(maker, index, &design, draw, first_scene);
-    design_block(block, BALANCE_MUST, &design);
-
-    // Sides and scenes must not go together either. The groups are those of the first scenes, the same for all
-    // four.
-    if (block->scene_count > 1 && block->scene_use == PROTOCOL_ALTERNATE)
-        balance_group(&design, first_scene, block->scene_count, BALANCE_MAY);
-    struct random_stream sides = random_stream(maker->key, PURPOSE_SIDES, number / 4, index);
-    draw->excess += balance_pairs(&design, &sides, draw->pair);
-    for (uint32_t i = 0; i < draw->count; i++)
-        draw->pair[i] ^= reflections[number % 4];
-
-    struct random_stream order = random_stream(maker->key, PURPOSE_ORDER, number, index);
-    for (uint32_t i = 0; i < draw->count; i++)
-        draw->order[i] = i;
-    if (block->order == PROTOCOL_ORDER_RANDOM)
-        random_shuffle(&order, draw->order, draw->count);
+    return trial->role == PROTOCOL_MAIN ? protocol_kind_name(trial->kind) : protocol_role_name(trial->role);
 }
 
 // Index of a condition, added where it is new; -1: its JSON does not fit.
@@ -194,58 +40,101 @@ static int32_t condition_index(struct plan *plan, const struct protocol_option *
     return (int32_t)plan->condition_count++;
 }
 
-// The two options of one cell with the cell's parameters.
-static void cell_options(const struct protocol *protocol, const struct protocol_block *block, uint32_t cell,
-                         struct protocol_option out[2])
+static const struct protocol_cell *cell_of(const struct protocol_block *block, uint32_t cell)
 {
-    for (uint32_t i = 0; i < block->option_count; i++)
-        out[i] = protocol->options[block->options[i]];
-    if (block->trials) {
-        out[0] = block->trials[cell].a;
-        out[1] = block->trials[cell].b;
-    }
-    for (uint32_t f = 0; f < block->factor_count; f++) {
-        const struct protocol_factor *factor = &block->factors[f];
-        out[factor->option == block->options[0] ? 0 : 1].values[factor->parameter] =
-            factor->levels[cell_level(block, cell, f)];
+    return cell < block->cell_count ? &block->cells[cell] : &block->extras[cell - block->cell_count].cell;
+}
+
+// A rating of one of two options says which, and whether it is the first or the second of its pair.
+static void drawn_option_json(const struct protocol *protocol, uint32_t index, uint32_t option,
+                              struct text *text)
+{
+    const struct protocol_block *block = &protocol->blocks[index];
+    bool first = false;
+    for (uint32_t i = 0; i < protocol->block_count; i++)
+        first = first || protocol->blocks[i].complement_of == (int32_t)index;
+    text_add(text, ",\"option\":");
+    text_json_string(text, protocol->options[block->options[option]].name);
+    if (first || block->complement_of >= 0)
+        text_add(text, ",\"order\":\"%s\"", first ? "first" : "second");
+}
+
+static bool factors_json(const struct maker *maker, const struct protocol_cell *cell, struct plan_trial *trial,
+                         const struct draw *draw, uint32_t scene)
+{
+    const struct protocol *protocol = maker->plan->protocol;
+    const struct protocol_block *block = &protocol->blocks[trial->block];
+    struct text text = {0};
+    if (block->kind == PROTOCOL_RATE && block->option_count == 2)
+        drawn_option_json(protocol, trial->block, draw->option, &text);
+    text_add(&text, "%s", cell->labels);
+    for (uint32_t f = 0; f < block->factor_count && trial->cell < block->cell_count; f++)
+        text_add(&text, ",\"%s\":%s", block->factors[f].name, block->factors[f].level[cell->level[f]]);
+    text_add(&text, "%s", protocol->scene_labels[scene]);
+    char *members = text_take(&text);
+    struct text whole = {0};
+    text_add(&whole, "{%s}", members && *members ? members + 1 : "");
+    free(members);
+    return text_copy(&whole, trial->factors, sizeof trial->factors);
+}
+
+// What a trial's settings say beyond the block's: where its target moves, what is played back.
+static bool settings_json(const struct maker *maker, struct plan_trial *trial)
+{
+    struct text text = {0};
+    if (trial->resolved->fixation == PROTOCOL_FIXATION_MOVING)
+        text_add(&text, ",\"target_seed\":%u", trial->target_seed);
+    if (trial->prerendered[0] || trial->prerendered[1])
+        text_add(&text, ",\"prerendered\":[%s%s%s]", trial->prerendered[0] ? "\"a\"" : "",
+                 trial->prerendered[0] && trial->prerendered[1] ? "," : "",
+                 trial->prerendered[1] ? "\"b\"" : "");
+    if (trial->spheres[0] > 0)
+        text_add(&text, ",\"spheres\":%u", trial->spheres[0] + trial->spheres[1]);
+    char *more = text_take(&text);
+    bool ok = protocol_settings_json(maker->plan->protocol, trial->kind, trial->resolved, more ? more : "",
+                                     trial->settings, sizeof trial->settings);
+    free(more);
+    return ok;
+}
+
+static void draw_details(const struct maker *maker, const struct protocol_block *block,
+                         struct plan_trial *trial)
+{
+    struct random_stream stream = draw_trial_stream(&maker->person, trial->ordinal);
+    const uint32_t *range = trial->resolved->spheres;
+    for (uint32_t i = 0; i < (trial->kind == PROTOCOL_SEQUENTIAL ? 2u : 1u) && range[1] > 0; i++)
+        trial->spheres[i] = range[0] + random_below(&stream, range[1] - range[0] + 1);
+    for (uint32_t i = 0; i < block->adjust_count; i++) { // in whole steps: the same on every machine
+        const struct protocol_adjust *adjust = &block->adjusts[i];
+        double steps = floor((adjust->start_max - adjust->start_min) / adjust->step + 1e-9);
+        uint32_t most = steps < 1e9 ? (uint32_t)steps : 1000000000u;
+        trial->adjust_start[i] = adjust->start_min + adjust->step * random_below(&stream, most + 1);
     }
 }
 
-static bool factors_json(const struct protocol *protocol, const struct protocol_block *block, uint32_t index,
-                         const struct draw *draw, struct plan_trial *trial)
+static bool place_options(struct maker *maker, const struct protocol_block *block,
+                          const struct protocol_cell *cell, const struct draw *draw, uint32_t which,
+                          struct plan_trial *trial)
 {
-    struct text text = {0};
-    text_add(&text, "{");
-    if (block->kind == PROTOCOL_RATE) {
-        bool first = false;
-        for (uint32_t i = 0; i < protocol->block_count; i++)
-            first = first || protocol->blocks[i].complement_of == (int32_t)index;
-        text_add(&text, "\"option\":");
-        text_json_string(&text, protocol->options[block->options[draw->option]].name);
-        if (first || block->complement_of >= 0)
-            text_add(&text, ",\"order\":\"%s\"", first ? "first" : "second");
-    } else if (block->trials) {
-        text_add(&text, "\"trial\":");
-        if (block->trials[trial->cell].name[0])
-            text_json_string(&text, block->trials[trial->cell].name);
-        else
-            text_add(&text, "%u", trial->cell + 1);
+    const struct protocol_option *option = cell->option;
+    if (!protocol_kind_is_pair(block->kind)) {
+        trial->option[0] = condition_index(maker->plan, &option[draw->option]);
+        trial->option[1] = -1;
+        trial->test_slot = draw->option == 0 ? PLAN_SLOT_A : PLAN_SLOT_NONE;
+        trial->first_shown = PLAN_SLOT_A;
+        trial->prerendered[0] = option[draw->option].playback == PROTOCOL_PRERENDERED;
+        return trial->option[0] >= 0;
     }
-    for (uint32_t f = 0; f < block->factor_count; f++) {
-        const struct protocol_factor *factor = &block->factors[f];
-        const struct catalogue_parameter *parameter =
-            &protocol->catalogue->modes[protocol->options[factor->option].mode].parameters[factor->parameter];
-        double level = factor->levels[cell_level(block, trial->cell, f)];
-        text_add(&text, f ? "," : "");
-        text_json_string(&text, factor->name);
-        text_add(&text, ":");
-        if (parameter->choices)
-            text_json_string(&text, parameter->choices[(size_t)level]);
-        else
-            text_number(&text, level);
+    uint32_t side = draw->pair[which] & 1, reference_first = draw->pair[which] >> 1;
+    trial->test_slot = (enum plan_slot)side;
+    // One after the other: the first is called A.
+    trial->first_shown =
+        trial->kind == PROTOCOL_SEQUENTIAL ? PLAN_SLOT_A : (enum plan_slot)(side ^ reference_first);
+    for (uint32_t i = 0; i < 2; i++) {
+        trial->option[side ^ i] = condition_index(maker->plan, &option[i]);
+        trial->prerendered[side ^ i] = option[i].playback == PROTOCOL_PRERENDERED;
     }
-    text_add(&text, "}");
-    return text_copy(&text, trial->factors, sizeof trial->factors);
+    return trial->option[0] >= 0 && trial->option[1] >= 0;
 }
 
 static bool make_trial(struct maker *maker, uint32_t index, uint32_t place, struct plan_trial *trial)
@@ -254,34 +143,30 @@ static bool make_trial(struct maker *maker, uint32_t index, uint32_t place, stru
     const struct protocol *protocol = plan->protocol;
     const struct protocol_block *block = &protocol->blocks[index];
     const struct draw *draw = &maker->draws[index];
-    uint32_t which = draw->order[place];
+    uint32_t which = draw->order[place], extra = which - draw->count;
     *trial = (struct plan_trial){.ordinal = ++plan->trial_count, .block = index, .kind = block->kind};
-    trial->cell = which / block->repetitions;
-    trial->repetition = which % block->repetitions;
-    trial->scene = protocol->scenes[draw->scene[which]];
-    trial->resolved = block->trials ? &block->trials[trial->cell].settings : &block->settings;
-    trial->question = &protocol->questions[trial->resolved->question];
-    trial->fixation = protocol_fixation_name(trial->resolved->fixation);
-    struct random_stream seeds = random_stream(maker->key, PURPOSE_SEED, plan->number, trial->ordinal);
-    trial->seed = random_u64(&seeds) >> 1;
-
-    struct protocol_option options[2];
-    cell_options(protocol, block, trial->cell, options);
-    if (block->kind == PROTOCOL_RATE) {
-        trial->option[0] = condition_index(plan, &options[draw->option]);
-        trial->option[1] = -1;
-        trial->test_slot = draw->option == 0 ? PLAN_SLOT_A : PLAN_SLOT_NONE;
-        trial->first_shown = PLAN_SLOT_A;
+    if (which < draw->count) {
+        trial->cell = draw->cell[which / block->repetitions];
+        trial->repetition = which % block->repetitions;
     } else {
-        uint32_t side = draw->pair[which] & 1, reference_first = draw->pair[which] >> 1;
-        trial->test_slot = (enum plan_slot)side;
-        trial->first_shown = (enum plan_slot)(side ^ reference_first);
-        trial->option[side] = condition_index(plan, &options[0]);
-        trial->option[1 - side] = condition_index(plan, &options[1]);
+        bool is_catch = extra >= block->extras[0].count;
+        trial->cell = block->cell_count + is_catch;
+        trial->repetition = extra - (is_catch ? block->extras[0].count : 0);
     }
-    return trial->option[0] >= 0 && (block->kind == PROTOCOL_RATE || trial->option[1] >= 0) &&
-           factors_json(protocol, block, index, draw, trial) &&
-           protocol_settings_json(protocol, trial->resolved, trial->settings, sizeof trial->settings);
+    const struct protocol_cell *cell = cell_of(block, trial->cell);
+    trial->role = cell->role;
+    trial->scene = protocol->scenes[draw->scene[which]];
+    trial->resolved = &cell->settings;
+    trial->question = trial->resolved->asked_count > 0 && trial->kind != PROTOCOL_ADJUST
+                          ? &protocol->questions[trial->resolved->asked[0]]
+                          : NULL;
+    trial->fixation = protocol_fixation_name(trial->resolved->fixation);
+    trial->seed = draw_trial_seed(&maker->person, trial->ordinal);
+    trial->target_seed = draw_target_seed(&maker->person, index, trial->cell);
+    trial->break_before = block->break_every > 0 && place > 0 && place % block->break_every == 0;
+    draw_details(maker, block, trial);
+    return place_options(maker, block, cell, draw, which, trial) &&
+           factors_json(maker, cell, trial, draw, draw->scene[which]) && settings_json(maker, trial);
 }
 
 // Conditions in the protocol's order, so that every participant of a study has the same list.
@@ -290,11 +175,11 @@ static bool list_conditions(struct plan *plan)
     const struct protocol *protocol = plan->protocol;
     for (uint32_t b = 0; b < protocol->block_count; b++) {
         const struct protocol_block *block = &protocol->blocks[b];
-        for (uint32_t cell = 0; cell < protocol_block_trials(block) / block->repetitions; cell++) {
-            struct protocol_option options[2];
-            cell_options(protocol, block, cell, options);
-            for (uint32_t i = 0; i < block->option_count; i++)
-                if (condition_index(plan, &options[i]) < 0)
+        for (uint32_t i = 0; i < block->cell_count + 2; i++) {
+            if (i >= block->cell_count && block->extras[i - block->cell_count].count == 0)
+                continue;
+            for (uint32_t k = 0; k < block->option_count; k++)
+                if (condition_index(plan, &cell_of(block, i)->option[k]) < 0)
                     return false;
         }
     }
@@ -305,22 +190,20 @@ static bool fill(struct maker *maker)
 {
     struct plan *plan = maker->plan;
     const struct protocol *protocol = plan->protocol;
-    uint32_t total = 0;
+    uint32_t total = 0, cells = 0;
     for (uint32_t b = 0; b < protocol->block_count; b++) {
         struct draw *draw = &maker->draws[b];
-        if (protocol->blocks[b].kind == PROTOCOL_RATE)
-            draw_rating(maker, b, draw);
-        else
-            draw_toggle(maker, b, draw);
-        total += draw->count;
+        draw_block(protocol, &maker->person, b, maker->draws);
+        total += draw->total;
+        cells += protocol->blocks[b].cell_count + 2;
         plan->imbalance = draw->excess > plan->imbalance ? draw->excess : plan->imbalance;
     }
     plan->trials = calloc(total, sizeof *plan->trials);
-    plan->conditions = calloc(2 * (size_t)total + PROTOCOL_BLOCKS, sizeof *plan->conditions);
+    plan->conditions = calloc(2 * (size_t)cells, sizeof *plan->conditions);
     if (!plan->trials || !plan->conditions || !list_conditions(plan))
         return false;
     for (uint32_t b = 0; b < protocol->block_count; b++)
-        for (uint32_t place = 0; place < maker->draws[b].count; place++)
+        for (uint32_t place = 0; place < maker->draws[b].total; place++)
             if (!make_trial(maker, b, place, &plan->trials[plan->trial_count]))
                 return false;
     return true;
@@ -329,10 +212,12 @@ static bool fill(struct maker *maker)
 struct plan *plan_create(const struct protocol *protocol, uint64_t seed, uint32_t number)
 {
     struct plan *plan = calloc(1, sizeof *plan);
-    struct maker maker = {plan, plan_key(protocol, seed), calloc(protocol->block_count, sizeof *maker.draws)};
+    struct maker maker = {plan, draw_person(protocol, seed, number),
+                          calloc(protocol->block_count, sizeof *maker.draws)};
     bool ok = plan && maker.draws;
     if (ok) {
-        *plan = (struct plan){.protocol = protocol, .seed = seed, .number = number};
+        *plan =
+            (struct plan){.protocol = protocol, .seed = seed, .number = number, .group = maker.person.group};
         ok = fill(&maker);
     }
     free(maker.draws);

@@ -30,24 +30,35 @@ struct plan_trial {
     uint32_t ordinal; // 1.. over the session
     uint32_t block;   // index into protocol.blocks; the name is the store's `block`
     enum protocol_kind kind;
+    enum protocol_role role;
     const char *scene;
     char settings[PLAN_JSON]; // JSON
-    char factors[PLAN_JSON];  // JSON; of a rating {"option":"foveated","order":"first"} (order: of a pair only)
-    int32_t option[2];        // conditions in slots a and b; a rating has its one option in a and -1 in b
+    char factors[PLAN_JSON];  // JSON; of a drawn rating {"option":"foveated","order":"first"} (order: of a pair
+                              // only)
+    int32_t option[2];        // conditions in slots a and b; one-option kinds have theirs in a and -1 in b
     enum plan_slot test_slot; // the slot of the block's first option; NONE where it is not shown
     enum plan_slot first_shown;
     const char *fixation;
-    uint64_t seed; // 63 bits, for what the trial itself draws (paths, targets)
+    uint64_t seed; // 63 bits, for what the trial itself draws
     const struct protocol_settings *resolved;
-    const struct protocol_question *question;
-    uint32_t cell;       // cell of the factorial or the list, from 0
-    uint32_t repetition; // from 0
+    const struct protocol_question *question; // the first one asked; NULL: none
+    uint32_t cell;                            // of the block, from 0; cell_count and on: null and catch trials
+    uint32_t repetition;                      // from 0
+    uint32_t target_seed; // of the path of a moving target: differs between cells and people, not between
+                          // repetitions
+    uint32_t spheres[2];  // to count, in each of a sequential trial's two showings; else [0] alone
+    double adjust_start[PROTOCOL_ADJUSTED];
+    bool prerendered[2]; // slots that are played back
+    bool break_before;
 };
+// The store's `kind`: the role of practice, catch and null trials, else what is done.
+const char *plan_trial_kind(const struct plan_trial *trial);
 
 struct plan {
     const struct protocol *protocol;
     uint64_t seed;
     uint32_t number;
+    uint32_t group; // of people, below protocol_groups
     struct plan_condition *conditions;
     uint32_t condition_count;
     struct plan_trial *trials;

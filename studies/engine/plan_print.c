@@ -28,16 +28,16 @@ char *plan_table_json(const struct plan *plan)
         text_add(&text,
                  "%s\n{\"ordinal\":%u,\"block\":\"%s\",\"kind\":\"%s\",\"scene\":\"%s\",\"settings\":%s,"
                  "\"factors\":%s",
-                 i ? "," : "", trial->ordinal, block_name(plan, trial), protocol_kind_name(trial->kind),
-                 trial->scene, trial->settings, trial->factors);
+                 i ? "," : "", trial->ordinal, block_name(plan, trial), plan_trial_kind(trial), trial->scene,
+                 trial->settings, trial->factors);
         text_add(&text, ",\"option_a\":%d,\"option_b\":", trial->option[0]);
         text_add(&text, trial->option[1] < 0 ? "null" : "%d", trial->option[1]);
         text_add(&text, ",\"test_slot\":");
         text_add(&text, trial->test_slot == PLAN_SLOT_NONE ? "null" : "\"%s\"",
                  trial->test_slot == PLAN_SLOT_NONE ? "" : plan_slot_name(trial->test_slot));
         text_add(&text, ",\"first_shown\":\"%s\",\"fixation\":\"%s\",\"question\":\"%s\",\"seed\":%llu}",
-                 plan_slot_name(trial->first_shown), trial->fixation, trial->question->name,
-                 (unsigned long long)trial->seed);
+                 plan_slot_name(trial->first_shown), trial->fixation,
+                 trial->question ? trial->question->name : "", (unsigned long long)trial->seed);
     }
     text_add(&text, "]}\n");
     return text_take(&text);
@@ -66,7 +66,7 @@ char *plan_table_text(const struct plan *plan)
         const struct plan_trial *trial = &plan->trials[i];
         const char *test = plan_slot_name(trial->test_slot);
         text_add(&text, "%5u  %-14s %-7s %-12s %3d ", trial->ordinal, block_name(plan, trial),
-                 protocol_kind_name(trial->kind), trial->scene, trial->option[0] + 1);
+                 plan_trial_kind(trial), trial->scene, trial->option[0] + 1);
         if (trial->option[1] >= 0)
             text_add(&text, "%3d ", trial->option[1] + 1);
         else

@@ -3,76 +3,47 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char *const kinds[] = {"toggle", "rate", NULL};
-static const char *const scene_uses[] = {"alternate", "random", NULL};
-static const char *const orders[] = {"random", "fixed", NULL};
-
 const char *protocol_kind_name(enum protocol_kind kind)
 {
-    return kinds[kind];
+    return language_find(&language_block, "kind")->words[kind];
 }
 
-static bool kind_read(struct reader *reader, const struct yaml_node *map, struct protocol_block *block)
+const char *protocol_role_name(enum protocol_role role)
 {
-    // Kinds of DESIGN section 4 that are no misspelling, only not for this version.
-    static const char *const later[] = {"sequential", "adjust", "staircase", "task",
-                                        "practice",   "catch",  "null",      NULL};
-    const struct yaml_node *node = read_required(reader, map, "the block", "kind");
-    if (!node)
-        return false;
-    for (uint32_t i = 0; node->kind == YAML_SCALAR && later[i]; i++)
-        if (strcmp(later[i], node->text) == 0)
-            return read_fail(reader, node, "kind '%s' is not run by this version; it runs toggle and rate",
-                             later[i]);
-    uint32_t index;
-    if (!read_word(reader, node, "kind", kinds, &index))
-        return false;
-    block->kind = (enum protocol_kind)index;
-    return true;
+    return language_find(&language_level, "role")->words[role];
+}
+
+bool protocol_kind_is_pair(enum protocol_kind kind)
+{
+    return kind != PROTOCOL_RATE && kind != PROTOCOL_TASK;
 }
 
 static bool block_options_read(struct reader *reader, const struct yaml_node *map, struct protocol_block *block)
 {
-    const struct yaml_node *list = read_required(reader, map, "the block", "options");
-    bool toggle = block->kind == PROTOCOL_TOGGLE;
-    if (!list || !read_is_list(reader, list, toggle ? "options of a toggle block" : "options of a rate block",
-                               toggle ? 2 : 1, 2))
+    const struct yaml_node *list = yaml_get(map, "options");
+    const char *names[PROTOCOL_OPTIONS + 1];
+    char what[64];
+    bool pair = protocol_kind_is_pair(block->kind);
+    option_names(reader, names);
+    snprintf(what, sizeof what, "options of a %s block", protocol_kind_name(block->kind));
+    uint32_t least = pair ? 2 : 1, most = block->kind == PROTOCOL_TASK ? 1 : 2;
+    if (!read_is_list(reader, list, what, least, most))
         return false;
-    for (const struct yaml_node *node = list->first; node; node = node->next) {
-        char name[PROTOCOL_NAME];
-        uint32_t index;
-        if (!read_name(reader, node, "option", name) || !option_find(reader, node, false, name, &index))
-            return false;
-        block->options[block->option_count++] = index;
-    }
-    if (block->option_count == 2 && block->options[0] == block->options[1])
-        return read_fail(reader, list, "both options are '%s'; name two",
-                         reader->protocol->options[block->options[0]].name);
-    return true;
+    return key_names(reader, map, "options", "option", names, most, block->options, &block->option_count);
 }
 
 static bool block_scenes_read(struct reader *reader, const struct yaml_node *map, struct protocol_block *block)
 {
-    const struct yaml_node *list = yaml_get(map, "scenes"), *use = yaml_get(map, "scene_use");
-    if (!list) {
-        for (uint32_t i = 0; i < reader->protocol->scene_count; i++)
-            block->scenes[block->scene_count++] = i;
-    } else {
-        if (!read_is_list(reader, list, "scenes", 1, PROTOCOL_SCENES))
-            return false;
-        for (const struct yaml_node *node = list->first; node; node = node->next) {
-            if (!scene_find(reader, node, &block->scenes[block->scene_count]))
-                return false;
-            for (uint32_t i = 0; i < block->scene_count; i++)
-                if (block->scenes[i] == block->scenes[block->scene_count])
-                    return read_fail(reader, node, "scene '%s' stands here twice; keep one", node->text);
-            block->scene_count++;
-        }
-    }
-    uint32_t index = block->kind == PROTOCOL_RATE ? PROTOCOL_RANDOM : PROTOCOL_ALTERNATE;
-    if (use && !read_word(reader, use, "scene_use", scene_uses, &index))
+    const char *names[PROTOCOL_SCENES + 1];
+    uint32_t use = block->kind == PROTOCOL_RATE ? PROTOCOL_RANDOM : PROTOCOL_ALTERNATE;
+    scene_names(reader, names);
+    for (uint32_t i = 0; i < reader->protocol->scene_count; i++)
+        block->scenes[block->scene_count++] = i;
+    if (!key_names(reader, map, "scenes", "scene", names, PROTOCOL_SCENES, block->scenes,
+                   &block->scene_count) ||
+        !key_word(reader, map, &language_block, "scene_use", &use))
         return false;
-    block->scene_use = (enum protocol_scene_use)index;
+    block->scene_use = (enum protocol_scene_use)use;
     return true;
 }
 
@@ -104,102 +75,154 @@ static bool complement_read(struct reader *reader, const struct yaml_node *map, 
     return true;
 }
 
-static bool question_check(struct reader *reader, const struct yaml_node *node,
-                           const struct protocol_block *block, const struct protocol_settings *settings)
+// A rate block of two options is one rating, of the option drawn; one of a single option has a design as others
+// have.
+static bool drawn_rating_check(struct reader *reader, const struct yaml_node *map,
+                               const struct protocol_block *block)
 {
-    const struct protocol *protocol = reader->protocol;
-    if (settings->question >= protocol->question_count)
-        return read_fail(reader, node, "block '%s' asks no question; set 'question' in its settings",
-                         block->name);
-    const struct protocol_question *question = &protocol->questions[settings->question];
-    bool scale = question->scale_min < question->scale_max;
-    if (block->kind == PROTOCOL_RATE && !scale)
-        return read_fail(reader, node, "block '%s' rates, but question '%s' has no 'scale'; add one",
-                         block->name, question->name);
-    if (block->kind == PROTOCOL_TOGGLE && scale)
-        return read_fail(reader, node, "block '%s' lets one choose, but question '%s' has a scale; ask another",
-                         block->name, question->name);
+    static const char *const designs[] = {"factors", "trials", "repetitions", "order", NULL};
+    for (uint32_t i = 0; designs[i] && block->kind == PROTOCOL_RATE && block->option_count == 2; i++) {
+        const struct yaml_node *node = yaml_get(map, designs[i]);
+        if (node)
+            return read_fail_key(
+                reader, node,
+                "a rate block of two options is one rating of the option drawn; for %s name one "
+                "option",
+                designs[i]);
+    }
     return true;
 }
 
 static bool design_read(struct reader *reader, const struct yaml_node *map, struct protocol_block *block)
 {
-    const struct yaml_node *factors = yaml_get(map, "factors"), *trials = yaml_get(map, "trials"),
-                           *repetitions = yaml_get(map, "repetitions"), *order = yaml_get(map, "order");
-    if (factors && trials)
-        return read_fail_key(reader, trials, "a block has either factors or trials; remove one");
-    if (block->kind == PROTOCOL_RATE && (factors || trials || repetitions))
-        return read_fail_key(reader,
-                             factors  ? factors
-                             : trials ? trials
-                                      : repetitions,
-                             "a rate block is one rating; factors, trials and repetitions need 'kind: toggle'");
-    int64_t count = 1;
-    uint32_t index = 0;
-    if (repetitions && !read_integer(reader, repetitions, "repetitions", 1, PROTOCOL_TRIALS, &count))
+    uint32_t order = PROTOCOL_ORDER_RANDOM;
+    block->repetitions = 1;
+    if (!drawn_rating_check(reader, map, block) ||
+        !key_integer(reader, map, &language_block, "repetitions", &block->repetitions) ||
+        !key_word(reader, map, &language_block, "order", &order) || !cells_read(reader, map, block) ||
+        !extras_read(reader, map, block) || !adjusts_read(reader, map, block))
         return false;
-    block->repetitions = (uint32_t)count;
-    if (order && !read_word(reader, order, "order", orders, &index))
-        return false;
-    block->order = (enum protocol_order)index;
-    if (factors && !factors_read(reader, factors, block))
-        return false;
-    if (trials && !trials_read(reader, trials, block))
-        return false;
+    block->order = (enum protocol_order)order;
     if (protocol_block_trials(block) > PROTOCOL_TRIALS)
         return read_fail(reader, map, "block '%s' has %u trials; at most %d fit", block->name,
                          protocol_block_trials(block), PROTOCOL_TRIALS);
-    for (uint32_t i = 0; i < block->listed_count; i++)
-        if (!question_check(reader, map, block, &block->trials[i].settings))
-            return false;
     return true;
 }
 
 static bool block_read(struct reader *reader, const struct yaml_node *map, struct protocol_block *block)
 {
-    static const char *const known[] = {"name",          "kind",         "options", "scenes",      "scene_use",
-                                        "complement_of", "factors",      "trials",  "repetitions", "order",
-                                        "settings",      "instructions", NULL};
     struct protocol *protocol = reader->protocol;
-    if (!read_keys(reader, map, "a block", known))
-        return false;
-    const struct yaml_node *name = read_required(reader, map, "the block", "name");
-    if (!name || !read_name(reader, name, "block", block->name))
+    const struct language_section *section = &language_block;
+    uint32_t kind = 0, role = 0;
+    if (!read_section(reader, map, section, NULL) || !key_name(reader, map, section, "name", block->name))
         return false;
     for (uint32_t i = 0; i < protocol->block_count; i++)
         if (strcmp(protocol->blocks[i].name, block->name) == 0)
-            return read_fail(reader, name, "block '%s' stands here twice; rename one", block->name);
-    const struct yaml_node *instructions = yaml_get(map, "instructions");
-    if (instructions ? !read_text(reader, instructions, "instructions", &block->instructions)
-                     : !(block->instructions = arena_text(reader->arena, "", 0)))
+            return read_fail(reader, yaml_get(map, "name"), "block '%s' stands here twice; rename one",
+                             block->name);
+    if (!key_text(reader, map, "instructions", "", &block->instructions) ||
+        !key_word(reader, map, section, "kind", &kind) || !key_word(reader, map, section, "role", &role) ||
+        !key_integer(reader, map, section, "break_every", &block->break_every) ||
+        !key_seconds(reader, map, section, "break_s", &block->break_ns))
         return false;
+    block->kind = (enum protocol_kind)kind;
+    block->role = (enum protocol_role)role;
     return settings_read(reader, yaml_get(map, "settings"), &block->settings) &&
-           kind_read(reader, map, block) && block_options_read(reader, map, block) &&
-           block_scenes_read(reader, map, block) && complement_read(reader, map, block) &&
-           design_read(reader, map, block) &&
-           (block->listed_count > 0 || question_check(reader, map, block, &block->settings));
+           block_options_read(reader, map, block) && block_scenes_read(reader, map, block) &&
+           complement_read(reader, map, block) && design_read(reader, map, block);
+}
+
+// Factors of one name assign people to the same groups, so they must have the same levels.
+static bool groups_check(struct reader *reader, const struct yaml_node *map)
+{
+    const struct protocol *protocol = reader->protocol;
+    const struct protocol_block *block = &protocol->blocks[protocol->block_count];
+    for (uint32_t f = 0; f < block->factor_count; f++) {
+        const struct protocol_factor *mine = &block->factors[f];
+        for (uint32_t b = 0; b < protocol->block_count && mine->between; b++) {
+            for (uint32_t g = 0; g < protocol->blocks[b].factor_count; g++) {
+                const struct protocol_factor *other = &protocol->blocks[b].factors[g];
+                if (!other->between || strcmp(other->name, mine->name) != 0)
+                    continue;
+                if (other->level_count != mine->level_count ||
+                    memcmp(other->level, mine->level, sizeof mine->level) != 0)
+                    return read_fail(reader, map,
+                                     "factor '%s' has other levels here than in block '%s'; people have "
+                                     "one level for the whole study",
+                                     mine->name, protocol->blocks[b].name);
+            }
+        }
+    }
+    return true;
 }
 
 bool blocks_read(struct reader *reader, const struct yaml_node *root, const struct protocol_settings *study)
 {
     struct protocol *protocol = reader->protocol;
-    const struct yaml_node *list = read_required(reader, root, "the protocol", "blocks");
-    if (!list || !read_is_list(reader, list, "blocks", 1, PROTOCOL_BLOCKS))
+    const struct yaml_node *list = yaml_get(root, "blocks");
+    if (!read_is_list(reader, list, "blocks", 1, PROTOCOL_BLOCKS))
         return false;
     for (const struct yaml_node *node = list->first; node; node = node->next) {
         protocol->blocks[protocol->block_count].settings = *study;
-        if (!block_read(reader, node, &protocol->blocks[protocol->block_count]))
+        if (!block_read(reader, node, &protocol->blocks[protocol->block_count]) || !groups_check(reader, node))
             return false;
         protocol->block_count++;
     }
+    if (protocol_groups(protocol) > PROTOCOL_GROUPS)
+        return read_fail(reader, list, "factors between participants make %u groups of people; at most %d fit",
+                         protocol_groups(protocol), PROTOCOL_GROUPS);
     return true;
+}
+
+// The next between-participant factor of another name than all before it; NULL: none is left. *at begins at 0.
+static const struct protocol_factor *next_group_factor(const struct protocol *protocol, uint32_t *at)
+{
+    for (; *at < protocol->block_count * PROTOCOL_FACTORS; ++*at) {
+        const struct protocol_block *block = &protocol->blocks[*at / PROTOCOL_FACTORS];
+        const struct protocol_factor *factor = &block->factors[*at % PROTOCOL_FACTORS];
+        bool known = *at % PROTOCOL_FACTORS >= block->factor_count || !factor->between;
+        for (uint32_t i = 0; i < *at && !known; i++) {
+            const struct protocol_factor *other =
+                &protocol->blocks[i / PROTOCOL_FACTORS].factors[i % PROTOCOL_FACTORS];
+            known = other->between && strcmp(other->name, factor->name) == 0;
+        }
+        if (!known) {
+            ++*at;
+            return factor;
+        }
+    }
+    return NULL;
+}
+
+uint32_t protocol_groups(const struct protocol *protocol)
+{
+    uint32_t groups = 1, at = 0;
+    for (const struct protocol_factor *factor;
+         (factor = next_group_factor(protocol, &at)) && groups <= PROTOCOL_GROUPS;)
+        groups *= factor->level_count;
+    return groups;
+}
+
+uint32_t protocol_group_level(const struct protocol *protocol, uint32_t group, const char *name)
+{
+    uint32_t at = 0;
+    for (const struct protocol_factor *factor; (factor = next_group_factor(protocol, &at));) {
+        if (strcmp(factor->name, name) == 0)
+            return group % factor->level_count;
+        group /= factor->level_count;
+    }
+    return 0;
+}
+
+uint32_t protocol_block_cells(const struct protocol_block *block)
+{
+    uint32_t cells = block->cell_count;
+    for (uint32_t f = 0; f < block->factor_count; f++)
+        cells /= block->factors[f].between ? block->factors[f].level_count : 1;
+    return cells;
 }
 
 uint32_t protocol_block_trials(const struct protocol_block *block)
 {
-    uint64_t cells = block->trials ? block->listed_count : 1;
-    for (uint32_t i = 0; i < block->factor_count; i++)
-        cells *= block->factors[i].level_count; // at most 16^6
-    cells *= block->repetitions;
-    return cells > UINT32_MAX ? UINT32_MAX : (uint32_t)cells;
+    return protocol_block_cells(block) * block->repetitions + block->extras[0].count + block->extras[1].count;
 }

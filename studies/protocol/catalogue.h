@@ -25,7 +25,8 @@ struct catalogue_mode {
 struct catalogue {
     const struct catalogue_mode *modes;
     uint32_t mode_count;
-    const char *const *scenes; // built-in names and those bound on the command line
+    const char *const *missing_modes; // of the language, but not of this program; ends with NULL; NULL: none
+    const char *const *scenes;        // built-in names and those bound on the command line
     uint32_t scene_count;
     const struct catalogue_parameter *settings; // of rendering, e.g. moving_objects {off, on}
     uint32_t setting_count;

@@ -58,31 +58,58 @@ bool option_find(struct reader *reader, const struct yaml_node *node, bool at_ke
     return read_unknown(reader, node, at_key, "option", word, names);
 }
 
-bool scene_find(struct reader *reader, const struct yaml_node *node, uint32_t *out)
+void option_names(const struct reader *reader, const char *names[PROTOCOL_OPTIONS + 1])
 {
-    const char *names[PROTOCOL_SCENES + 1] = {NULL};
-    for (uint32_t i = 0; i < reader->protocol->scene_count; i++)
-        names[i] = reader->protocol->scenes[i];
-    return read_word(reader, node, "scene", names, out);
+    uint32_t count = 0;
+    for (; count < reader->protocol->option_count; count++)
+        names[count] = reader->protocol->options[count].name;
+    names[count] = NULL;
+}
+
+void scene_names(const struct reader *reader, const char *names[PROTOCOL_SCENES + 1])
+{
+    uint32_t count = 0;
+    for (; count < reader->protocol->scene_count; count++)
+        names[count] = reader->protocol->scenes[count];
+    names[count] = NULL;
+}
+
+// A scene's name is known to the program, or bound on the command line, or something stands in for it.
+static bool scene_read(struct reader *reader, const struct yaml_node *node, uint32_t place)
+{
+    struct protocol *protocol = reader->protocol;
+    const char *known[64] = {NULL};
+    const struct yaml_node *name = node;
+    for (uint32_t i = 0; i < reader->catalogue->scene_count && i < 63; i++)
+        known[i] = reader->catalogue->scenes[i];
+    if (node->kind == YAML_MAP) {
+        if (!read_section(reader, node, &language_scene, NULL) ||
+            !key_text(reader, node, "stand_in", "", &protocol->stand_ins[place]) ||
+            !key_labels(reader, node, "labels", protocol->scene_labels[place]))
+            return false;
+        name = yaml_get(node, "name");
+    } else if (!(protocol->stand_ins[place] = arena_text(reader->arena, "", 0))) {
+        return read_fail(reader, node, "out of memory");
+    }
+    uint32_t index;
+    if (!read_name(reader, name, "scene", protocol->scenes[place]) ||
+        (!*protocol->stand_ins[place] && !read_word(reader, name, "scene", known, &index)))
+        return false;
+    for (uint32_t i = 0; i < place; i++)
+        if (strcmp(protocol->scenes[i], protocol->scenes[place]) == 0)
+            return read_fail(reader, name, "scene '%s' stands here twice; keep one", protocol->scenes[place]);
+    return true;
 }
 
 bool scenes_read(struct reader *reader, const struct yaml_node *root)
 {
     struct protocol *protocol = reader->protocol;
-    const struct yaml_node *list = read_required(reader, root, "the protocol", "scenes");
-    if (!list || !read_is_list(reader, list, "scenes", 1, PROTOCOL_SCENES))
+    const struct yaml_node *list = yaml_get(root, "scenes");
+    if (!read_is_list(reader, list, "scenes", 1, PROTOCOL_SCENES))
         return false;
-    const char *known[64] = {NULL};
-    for (uint32_t i = 0; i < reader->catalogue->scene_count && i < 63; i++)
-        known[i] = reader->catalogue->scenes[i];
     for (const struct yaml_node *node = list->first; node; node = node->next) {
-        char *name = protocol->scenes[protocol->scene_count];
-        uint32_t index;
-        if (!read_name(reader, node, "scene", name) || !read_word(reader, node, "scene", known, &index))
+        if (!scene_read(reader, node, protocol->scene_count))
             return false;
-        for (uint32_t i = 0; i < protocol->scene_count; i++)
-            if (strcmp(protocol->scenes[i], name) == 0)
-                return read_fail(reader, node, "scene '%s' stands here twice; keep one", name);
         protocol->scene_count++;
     }
     return true;
@@ -91,6 +118,12 @@ bool scenes_read(struct reader *reader, const struct yaml_node *root)
 static bool mode_read(struct reader *reader, const struct yaml_node *node, uint32_t *out)
 {
     const char *known[64] = {NULL};
+    for (const char *const *each = reader->catalogue->missing_modes; each && *each; each++)
+        if (node->kind == YAML_SCALAR && strcmp(*each, node->text) == 0)
+            return read_fail(reader, node,
+                             "mode '%s' does not exist in this program yet; `fovstudy modes` lists those "
+                             "that do",
+                             *each);
     for (uint32_t i = 0; i < reader->catalogue->mode_count && i < 63; i++)
         known[i] = reader->catalogue->modes[i].name;
     return read_word(reader, node, "mode", known, out);
@@ -98,22 +131,19 @@ static bool mode_read(struct reader *reader, const struct yaml_node *node, uint3
 
 static bool option_read(struct reader *reader, const struct yaml_node *node, struct protocol_option *option)
 {
-    struct yaml_node name = *node;
-    name.kind = YAML_SCALAR;
-    name.text = node->key;
-    name.line = node->key_line;
-    name.column = node->key_column;
-    if (!read_name(reader, &name, "option", option->name) || !read_is_map(reader, node, "an option"))
+    uint32_t playback = PROTOCOL_LIVE;
+    if (!read_key_name(reader, node, "option", option->name) ||
+        !read_section(reader, node, &language_option, NULL) ||
+        !mode_read(reader, yaml_get(node, "mode"), &option->mode) ||
+        !key_word(reader, node, &language_option, "playback", &playback))
         return false;
-    const struct yaml_node *mode = read_required(reader, node, "the option", "mode");
-    if (!mode || !mode_read(reader, mode, &option->mode))
-        return false;
+    option->playback = (enum protocol_playback)playback;
     const struct catalogue_mode *found = &reader->catalogue->modes[option->mode];
     for (uint32_t i = 0; i < found->parameter_count && i < CATALOGUE_PARAMETERS; i++)
         option->values[i] = found->parameters[i].fallback;
     for (const struct yaml_node *each = node->first; each; each = each->next) {
         uint32_t index;
-        if (each == mode)
+        if (language_find(&language_option, each->key))
             continue;
         if (!parameter_find(reader, each, true, each->key, option->mode, &index) ||
             !parameter_read(reader, each, &found->parameters[index], found->name, &option->values[index]))
@@ -125,8 +155,8 @@ static bool option_read(struct reader *reader, const struct yaml_node *node, str
 bool options_read(struct reader *reader, const struct yaml_node *root)
 {
     struct protocol *protocol = reader->protocol;
-    const struct yaml_node *map = read_required(reader, root, "the protocol", "options");
-    if (!map || !read_is_map(reader, map, "options"))
+    const struct yaml_node *map = yaml_get(root, "options");
+    if (!read_is_map(reader, map, "options"))
         return false;
     if (map->count == 0 || map->count > PROTOCOL_OPTIONS)
         return read_fail(reader, map, "options has %u entries; it takes 1 to %d", map->count, PROTOCOL_OPTIONS);
@@ -135,8 +165,8 @@ bool options_read(struct reader *reader, const struct yaml_node *root)
             return false;
         protocol->option_count++;
     }
-    const struct yaml_node *reference = read_required(reader, root, "the protocol", "reference");
+    const struct yaml_node *reference = yaml_get(root, "reference");
     char name[PROTOCOL_NAME];
-    return reference && read_name(reader, reference, "reference", name) &&
+    return read_name(reader, reference, "reference", name) &&
            option_find(reader, reference, false, name, &protocol->reference);
 }

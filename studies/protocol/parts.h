@@ -20,19 +20,37 @@ bool parameter_find(struct reader *reader, const struct yaml_node *node, bool at
                     uint32_t mode, uint32_t *out);
 bool option_find(struct reader *reader, const struct yaml_node *node, bool at_key, const char *word,
                  uint32_t *out);
-bool scene_find(struct reader *reader, const struct yaml_node *node, uint32_t *out);
+// Names for key_names; each fills an array that ends with NULL.
+void option_names(const struct reader *reader, const char *names[PROTOCOL_OPTIONS + 1]);
+void scene_names(const struct reader *reader, const char *names[PROTOCOL_SCENES + 1]);
 
 // people.c
 bool questions_read(struct reader *reader, const struct yaml_node *root);
 bool consent_read(struct reader *reader, const struct yaml_node *root);
 bool participant_read(struct reader *reader, const struct yaml_node *root);
+
+// rules.c
 bool analysis_read(struct reader *reader, const struct yaml_node *root);
+bool exclude_read(struct reader *reader, const struct yaml_node *root);
 
 // blocks.c
 bool blocks_read(struct reader *reader, const struct yaml_node *root, const struct protocol_settings *study);
 
+// cell.c
+// A cell as the block has it before any level changes it.
+void cell_init(const struct protocol *protocol, const struct protocol_block *block, struct protocol_cell *out);
+// What a level or a listed trial changes.
+bool cell_change(struct reader *reader, const struct yaml_node *map, const struct protocol_block *block,
+                 struct protocol_cell *cell);
+// Whether what the cell asks fits the block's kind; errors are placed at `node`.
+bool cell_check(struct reader *reader, const struct yaml_node *node, const struct protocol_block *block,
+                const struct protocol_cell *cell);
+
 // design.c
-bool factors_read(struct reader *reader, const struct yaml_node *node, struct protocol_block *block);
-bool trials_read(struct reader *reader, const struct yaml_node *node, struct protocol_block *block);
+bool cells_read(struct reader *reader, const struct yaml_node *map, struct protocol_block *block);
+
+// procedure.c: what belongs to one kind of block
+bool extras_read(struct reader *reader, const struct yaml_node *map, struct protocol_block *block);
+bool adjusts_read(struct reader *reader, const struct yaml_node *map, struct protocol_block *block);
 
 #endif

@@ -2,25 +2,17 @@
 
 #include <string.h>
 
-static bool key_name(struct reader *reader, const struct yaml_node *node, const char *what,
-                     char out[PROTOCOL_NAME])
+static bool scale_read(struct reader *reader, const struct yaml_node *map, struct protocol_question *question)
 {
-    struct yaml_node name = {
-        .kind = YAML_SCALAR, .text = node->key, .line = node->key_line, .column = node->key_column};
-    return read_name(reader, &name, what, out);
-}
-
-static bool scale_read(struct reader *reader, const struct yaml_node *node, struct protocol_question *question)
-{
-    int64_t ends[2];
-    if (!read_is_list(reader, node, "scale", 2, 2))
+    const struct yaml_node *scale = yaml_get(map, "scale"), *count = yaml_get(map, "count");
+    int64_t ends[2] = {0, 0};
+    if (scale && count)
+        return read_fail_key(reader, count, "a question has a scale or a count; remove one");
+    if (!key_range(reader, map, scale ? "scale" : "count", count ? 0 : -100, count ? 1000 : 100, ends))
         return false;
-    if (!read_integer(reader, node->first, "the scale's lower end", -100, 100, &ends[0]) ||
-        !read_integer(reader, node->last, "the scale's upper end", -100, 100, &ends[1]))
-        return false;
-    if (ends[0] >= ends[1])
-        return read_fail(reader, node, "the scale ends at %d, not above its begin %d; swap them", (int)ends[1],
-                         (int)ends[0]);
+    if (scale && ends[0] == ends[1])
+        return read_fail(reader, scale, "the scale ends where it begins, at %d; widen it", (int)ends[0]);
+    question->type = scale ? PROTOCOL_ASK_RATING : count ? PROTOCOL_ASK_COUNT : PROTOCOL_ASK_CHOICE;
     question->scale_min = (int32_t)ends[0];
     question->scale_max = (int32_t)ends[1];
     return true;
@@ -29,19 +21,23 @@ static bool scale_read(struct reader *reader, const struct yaml_node *node, stru
 static bool question_read(struct reader *reader, const struct yaml_node *node,
                           struct protocol_question *question)
 {
-    static const char *const known[] = {"text", "scale", "labels", NULL};
-    if (!key_name(reader, node, "question", question->name) || !read_keys(reader, node, "a question", known))
+    const struct language_section *section = &language_question;
+    uint32_t equal = 0, correct = 0;
+    if (!read_key_name(reader, node, "question", question->name) ||
+        !read_section(reader, node, section, NULL) || !key_text(reader, node, "text", "", &question->text) ||
+        !scale_read(reader, node, question) || !key_word(reader, node, section, "equal", &equal) ||
+        !key_word(reader, node, section, "correct", &correct))
         return false;
-    const struct yaml_node *text = read_required(reader, node, "the question", "text");
-    if (!text || !read_text(reader, text, "text", &question->text))
-        return false;
-    const struct yaml_node *scale = yaml_get(node, "scale"), *labels = yaml_get(node, "labels");
-    if (scale && !scale_read(reader, scale, question))
-        return false;
+    question->equal = equal == 1;
+    question->correct = (enum protocol_correct)correct;
     question->label_min = question->label_max = arena_text(reader->arena, "", 0);
+    if ((equal || correct) && question->type != PROTOCOL_ASK_CHOICE)
+        return read_fail(reader, node, "'equal' and 'correct' are for choices; question '%s' has a number",
+                         question->name);
+    const struct yaml_node *labels = yaml_get(node, "labels");
     if (!labels)
         return true;
-    if (!scale)
+    if (question->type != PROTOCOL_ASK_RATING)
         return read_fail_key(reader, labels,
                              "labels name the ends of a scale; add 'scale: [1, 10]' or remove them");
     return read_is_list(reader, labels, "labels", 2, 2) &&
@@ -52,8 +48,8 @@ static bool question_read(struct reader *reader, const struct yaml_node *node,
 bool questions_read(struct reader *reader, const struct yaml_node *root)
 {
     struct protocol *protocol = reader->protocol;
-    const struct yaml_node *map = read_required(reader, root, "the protocol", "questions");
-    if (!map || !read_is_map(reader, map, "questions"))
+    const struct yaml_node *map = yaml_get(root, "questions");
+    if (!read_is_map(reader, map, "questions"))
         return false;
     if (map->count == 0 || map->count > PROTOCOL_QUESTIONS)
         return read_fail(reader, map, "questions has %u entries; it takes 1 to %d", map->count,
@@ -68,15 +64,10 @@ bool questions_read(struct reader *reader, const struct yaml_node *root)
 
 bool consent_read(struct reader *reader, const struct yaml_node *root)
 {
-    static const char *const known[] = {"version", "text", NULL};
-    const struct yaml_node *map = read_required(reader, root, "the protocol", "consent");
-    if (!map || !read_keys(reader, map, "consent", known))
-        return false;
-    const struct yaml_node *version = read_required(reader, map, "consent", "version");
-    if (!version || !read_text(reader, version, "version", &reader->protocol->consent_version))
-        return false;
-    const struct yaml_node *text = read_required(reader, map, "consent", "text");
-    return text && read_text(reader, text, "text", &reader->protocol->consent_text);
+    const struct yaml_node *map = yaml_get(root, "consent");
+    return read_section(reader, map, &language_consent, NULL) &&
+           key_text(reader, map, "version", "", &reader->protocol->consent_version) &&
+           key_text(reader, map, "text", "", &reader->protocol->consent_text);
 }
 
 static bool choices_read(struct reader *reader, const struct yaml_node *node,
@@ -118,33 +109,21 @@ static bool limits_read(struct reader *reader, const struct yaml_node *map,
 static bool attribute_read(struct reader *reader, const struct yaml_node *map,
                            struct protocol_attribute *attribute)
 {
-    static const char *const known[] = {"name", "type", "required", "unit", "prompt",
-                                        "min",  "max",  "choices",  NULL};
-    static const char *const types[] = {"integer", "number", "text", "choice", NULL};
-    static const char *const answers[] = {"no", "yes", NULL};
-    if (!read_keys(reader, map, "a participant attribute", known))
-        return false;
-    const struct yaml_node *name = read_required(reader, map, "the attribute", "name");
-    if (!name || !read_name(reader, name, "attribute", attribute->name))
+    const struct language_section *section = &language_attribute;
+    uint32_t type = 0, required = 0;
+    if (!read_section(reader, map, section, NULL) || !key_name(reader, map, section, "name", attribute->name))
         return false;
     for (struct protocol_attribute *other = reader->protocol->attributes; other < attribute; other++)
         if (strcmp(other->name, attribute->name) == 0)
-            return read_fail(reader, name, "attribute '%s' stands here twice; keep one", attribute->name);
-    const struct yaml_node *type = read_required(reader, map, "the attribute", "type");
-    uint32_t type_index, required = 0;
-    if (!type || !read_word(reader, type, "type", types, &type_index))
+            return read_fail(reader, yaml_get(map, "name"), "attribute '%s' stands here twice; keep one",
+                             attribute->name);
+    if (!key_word(reader, map, section, "type", &type) ||
+        !key_word(reader, map, section, "required", &required) ||
+        !key_name(reader, map, section, "unit", attribute->unit) ||
+        !key_text(reader, map, "prompt", attribute->name, &attribute->prompt))
         return false;
-    attribute->type = (enum protocol_attribute_type)type_index;
-    const struct yaml_node *need = yaml_get(map, "required"), *unit = yaml_get(map, "unit"),
-                           *prompt = yaml_get(map, "prompt");
-    if (need && !read_word(reader, need, "required", answers, &required))
-        return false;
+    attribute->type = (enum protocol_attribute_type)type;
     attribute->required = required == 1;
-    if (unit && !read_name(reader, unit, "unit", attribute->unit))
-        return false;
-    if (prompt ? !read_text(reader, prompt, "prompt", &attribute->prompt)
-               : !(attribute->prompt = arena_text(reader->arena, attribute->name, strlen(attribute->name))))
-        return false;
     return limits_read(reader, map, attribute);
 }
 
@@ -160,38 +139,6 @@ bool participant_read(struct reader *reader, const struct yaml_node *root)
         if (!attribute_read(reader, node, &protocol->attributes[protocol->attribute_count]))
             return false;
         protocol->attribute_count++;
-    }
-    return true;
-}
-
-bool analysis_read(struct reader *reader, const struct yaml_node *root)
-{
-    static const char *const known[] = {"method", "of", "per", NULL};
-    static const char *const words[3][8] = {{"binomial", "paired_t", "unpaired_t", "mean", NULL},
-                                            {"choice", "rating", "toggles", "reaction", NULL},
-                                            {"cell", "factor", "order", "scene", "study", NULL}};
-    struct protocol *protocol = reader->protocol;
-    const struct yaml_node *list = yaml_get(root, "analysis");
-    if (!list)
-        return true;
-    if (!read_is_list(reader, list, "analysis", 0, PROTOCOL_ANALYSES))
-        return false;
-    for (const struct yaml_node *node = list->first; node; node = node->next) {
-        struct protocol_analysis *analysis = &protocol->analyses[protocol->analysis_count++];
-        char *const into[3] = {analysis->method, analysis->of, analysis->per};
-        if (!read_keys(reader, node, "an analysis", known))
-            return false;
-        for (uint32_t i = 0; i < 3; i++) {
-            const struct yaml_node *value =
-                i < 2 ? read_required(reader, node, "the analysis", known[i]) : yaml_get(node, known[i]);
-            uint32_t index;
-            if (!value && i < 2)
-                return false;
-            if (value && !read_word(reader, value, known[i], words[i], &index))
-                return false;
-            if (value)
-                strcpy(into[i], words[i][index]);
-        }
     }
     return true;
 }

@@ -15,28 +15,23 @@ struct owned_protocol {
 
 static bool head_read(struct reader *reader, const struct yaml_node *root)
 {
-    static const char *const known[] = {"fovstudy", "name",        "title",    "seed",      "scenes",
-                                        "options",  "reference",   "settings", "questions", "instructions",
-                                        "consent",  "participant", "analysis", "blocks",    NULL};
+    const struct language_section *section = &language_protocol;
     struct protocol *protocol = reader->protocol;
     int64_t version, seed;
-    if (!read_keys(reader, root, "the protocol", known))
-        return false;
-    const struct yaml_node *node = read_required(reader, root, "the protocol", "fovstudy");
-    if (!node || !read_integer(reader, node, "fovstudy (the version of the protocol language)", 1, 1, &version))
-        return false;
-    node = read_required(reader, root, "the protocol", "name");
-    if (!node || !read_name(reader, node, "name", protocol->name))
-        return false;
-    node = read_required(reader, root, "the protocol", "seed");
-    if (!node || !read_integer(reader, node, "seed", 0, INT64_MAX, &seed))
+    uint32_t several = 0;
+    if (!read_section(reader, root, section, NULL) ||
+        !read_integer(reader, yaml_get(root, "fovstudy"), "fovstudy (the version of the protocol language)", 1,
+                      1, &version) ||
+        !key_name(reader, root, section, "name", protocol->name) ||
+        !read_integer(reader, yaml_get(root, "seed"), "seed", 0, INT64_MAX, &seed) ||
+        !key_integer(reader, root, section, "participants", &protocol->participants) ||
+        !key_word(reader, root, section, "sessions", &several) ||
+        !key_text(reader, root, "title", "", &protocol->title) ||
+        !key_text(reader, root, "instructions", "", &protocol->instructions))
         return false;
     protocol->seed = (uint64_t)seed;
-    node = read_required(reader, root, "the protocol", "title");
-    if (!node || !read_text(reader, node, "title", &protocol->title))
-        return false;
-    node = read_required(reader, root, "the protocol", "instructions");
-    return node && read_text(reader, node, "instructions", &protocol->instructions);
+    protocol->several_sessions = several == 1;
+    return true;
 }
 
 static bool all_read(struct reader *reader, const struct yaml_node *root)
@@ -45,8 +40,8 @@ static bool all_read(struct reader *reader, const struct yaml_node *root)
     settings_defaults(reader->catalogue, &settings);
     return head_read(reader, root) && scenes_read(reader, root) && options_read(reader, root) &&
            questions_read(reader, root) && consent_read(reader, root) && participant_read(reader, root) &&
-           analysis_read(reader, root) && settings_read(reader, yaml_get(root, "settings"), &settings) &&
-           blocks_read(reader, root, &settings);
+           analysis_read(reader, root) && exclude_read(reader, root) &&
+           settings_read(reader, yaml_get(root, "settings"), &settings) && blocks_read(reader, root, &settings);
 }
 
 struct protocol *protocol_parse(const char *name, const char *text, size_t size,

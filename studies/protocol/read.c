@@ -107,20 +107,30 @@ bool read_is_list(struct reader *reader, const struct yaml_node *node, const cha
     return true;
 }
 
-bool read_keys(struct reader *reader, const struct yaml_node *map, const char *what, const char *const *known)
+bool read_section(struct reader *reader, const struct yaml_node *map, const struct language_section *section,
+                  const char *const *more)
 {
-    if (!read_is_map(reader, map, what))
+    const char *known[64] = {NULL};
+    uint32_t count = 0;
+    for (const struct language_key *each = section->keys; each->name; each++)
+        known[count++] = each->name;
+    for (; more && *more && count < 63; more++)
+        known[count++] = *more;
+    if (!read_is_map(reader, map, section->title))
         return false;
     for (const struct yaml_node *child = map->first; child; child = child->next) {
-        bool found = false;
-        for (const char *const *each = known; *each && !found; each++)
-            found = strcmp(*each, child->key) == 0;
+        bool found = section->open && !more;
+        for (uint32_t i = 0; i < count && !found; i++)
+            found = strcmp(known[i], child->key) == 0;
         if (!found) {
             char words[PROTOCOL_NAME + 32];
-            snprintf(words, sizeof words, "in %s, key", what);
+            snprintf(words, sizeof words, "in %s, key", section->title);
             return read_unknown(reader, child, true, words, child->key, known);
         }
     }
+    for (const struct language_key *each = section->keys; each->name; each++)
+        if (each->required && !read_required(reader, map, section->title, each->name))
+            return false;
     return true;
 }
 

@@ -4,6 +4,7 @@
 #ifndef STUDIES_PROTOCOL_READ_H
 #define STUDIES_PROTOCOL_READ_H
 
+#include "studies/protocol/language.h"
 #include "studies/protocol/protocol.h"
 #include "studies/protocol/yaml.h"
 
@@ -31,8 +32,10 @@ const char *read_nearest(const char *word, const char *const *known);
 bool read_is_map(struct reader *reader, const struct yaml_node *node, const char *what);
 bool read_is_list(struct reader *reader, const struct yaml_node *node, const char *what, uint32_t min,
                   uint32_t max);
-// A mapping whose every key is one of `known`.
-bool read_keys(struct reader *reader, const struct yaml_node *map, const char *what, const char *const *known);
+// A mapping whose keys are those of the section or, where it is open, of `more` (NULL: none), with all that are
+// required.
+bool read_section(struct reader *reader, const struct yaml_node *map, const struct language_section *section,
+                  const char *const *more);
 const struct yaml_node *read_required(struct reader *reader, const struct yaml_node *map, const char *what,
                                       const char *key); // NULL after an error
 
@@ -46,5 +49,31 @@ bool read_seconds(struct reader *reader, const struct yaml_node *node, const cha
                   int64_t *out_ns);
 bool read_word(struct reader *reader, const struct yaml_node *node, const char *what, const char *const *words,
                uint32_t *out_index);
+
+// A key of a section by its type, range and words; where the mapping lacks it, *out stays and the result is
+// true.
+bool key_name(struct reader *reader, const struct yaml_node *map, const struct language_section *section,
+              const char *key, char out[PROTOCOL_NAME]);
+bool key_text(struct reader *reader, const struct yaml_node *map, const char *key, const char *fallback,
+              char **out);
+bool key_number(struct reader *reader, const struct yaml_node *map, const struct language_section *section,
+                const char *key, double *out);
+bool key_integer(struct reader *reader, const struct yaml_node *map, const struct language_section *section,
+                 const char *key, uint32_t *out);
+bool key_seconds(struct reader *reader, const struct yaml_node *map, const struct language_section *section,
+                 const char *key, int64_t *out_ns);
+bool key_word(struct reader *reader, const struct yaml_node *map, const struct language_section *section,
+              const char *key, uint32_t *out_index);
+// Two whole numbers in order, both from min to max.
+bool key_range(struct reader *reader, const struct yaml_node *map, const char *key, int64_t min, int64_t max,
+               int64_t out[2]);
+// A name or a list of names, each one of `known`; at most `capacity` indices, none twice.
+bool key_names(struct reader *reader, const struct yaml_node *map, const char *key, const char *what,
+               const char *const *known, uint32_t capacity, uint32_t *out, uint32_t *out_count);
+// The key of a node in its mapping as a name of the file's own.
+bool read_key_name(struct reader *reader, const struct yaml_node *node, const char *what,
+                   char out[PROTOCOL_NAME]);
+// {name: value, ...} as JSON members, each after a comma; values are names or numbers.
+bool key_labels(struct reader *reader, const struct yaml_node *map, const char *key, char out[PROTOCOL_LABELS]);
 
 #endif

@@ -3,35 +3,27 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char *const cameras[] = {"path", "still", NULL};
-static const char *const fixations[] = {"free", NULL};
-static const char *const foveates[] = {"gaze", NULL};
-static const char *const advances[] = {"key", "auto", NULL};
-
 const char *protocol_camera_name(enum protocol_camera camera)
 {
-    return cameras[camera];
+    return language_find(&language_settings, "camera")->words[camera];
 }
 
 const char *protocol_fixation_name(enum protocol_fixation fixation)
 {
-    return fixations[fixation];
+    return language_find(&language_settings, "fixation")->words[fixation];
 }
 
 const char *protocol_foveate_name(enum protocol_foveate foveate)
 {
-    return foveates[foveate];
+    return language_find(&language_settings, "foveate")->words[foveate];
 }
 
 void settings_defaults(const struct catalogue *catalogue, struct protocol_settings *out)
 {
     *out = (struct protocol_settings){
-        .fade_to_gray_ns =
-            125000000, // Franke 2021, section 8.2: half a second of gray fade; its parts: DESIGN 4
-        .fade_gray_ns = 250000000,
-        .fade_from_gray_ns = 125000000,
-        .confirm_ns = 500000000,
-        .question = UINT32_MAX,
+        // Franke 2021, section 8.2: half a second of gray fade; its parts: DESIGN 4
+        .fade_to_gray_ns = 125000000, .fade_gray_ns = 250000000, .fade_from_gray_ns = 125000000,
+        .gap_ns = 1000000000,         .confirm_ns = 500000000,   .count_question = -1,
     };
     for (uint32_t i = 0; i < catalogue->setting_count; i++)
         out->render[i] = catalogue->settings[i].fallback;
@@ -39,72 +31,81 @@ void settings_defaults(const struct catalogue *catalogue, struct protocol_settin
 
 static bool fade_read(struct reader *reader, const struct yaml_node *node, struct protocol_settings *settings)
 {
-    static const char *const known[] = {"to_gray_s", "gray_s", "from_gray_s", NULL};
-    int64_t *const into[] = {&settings->fade_to_gray_ns, &settings->fade_gray_ns, &settings->fade_from_gray_ns};
-    if (!read_keys(reader, node, "fade", known))
-        return false;
-    for (uint32_t i = 0; known[i]; i++) {
-        const struct yaml_node *value = yaml_get(node, known[i]);
-        if (value && !read_seconds(reader, value, known[i], 10, into[i]))
-            return false;
-    }
-    return true;
+    const struct language_section *section = &language_fade;
+    return !node || (read_section(reader, node, section, NULL) &&
+                     key_seconds(reader, node, section, "to_gray_s", &settings->fade_to_gray_ns) &&
+                     key_seconds(reader, node, section, "gray_s", &settings->fade_gray_ns) &&
+                     key_seconds(reader, node, section, "from_gray_s", &settings->fade_from_gray_ns));
 }
 
-static bool question_read(struct reader *reader, const struct yaml_node *node, uint32_t *out)
+static bool words_read(struct reader *reader, const struct yaml_node *map, struct protocol_settings *settings)
 {
-    const char *names[PROTOCOL_QUESTIONS + 1] = {NULL};
-    for (uint32_t i = 0; i < reader->protocol->question_count; i++)
-        names[i] = reader->protocol->questions[i].name;
-    return read_word(reader, node, "question", names, out);
-}
-
-// The words and times of the table below; false after an error.
-static bool plain_read(struct reader *reader, const struct yaml_node *map, struct protocol_settings *settings)
-{
-    const struct {
-        const char *key;
-        const char *const *words;
-    } choices[] = {{"camera", cameras}, {"fixation", fixations}, {"foveate", foveates}, {"advance", advances}};
-    uint32_t chosen[] = {settings->camera, settings->fixation, settings->foveate, settings->advance};
-    for (uint32_t i = 0; i < 4; i++) {
-        const struct yaml_node *node = yaml_get(map, choices[i].key);
-        if (node && !read_word(reader, node, choices[i].key, choices[i].words, &chosen[i]))
+    static const char *const keys[] = {"camera", "fixation", "foveate", "advance", "pace"};
+    uint32_t chosen[] = {settings->camera, settings->fixation, settings->foveate, settings->advance,
+                         settings->pace};
+    for (uint32_t i = 0; i < sizeof keys / sizeof keys[0]; i++)
+        if (!key_word(reader, map, &language_settings, keys[i], &chosen[i]))
             return false;
-    }
     settings->camera = (enum protocol_camera)chosen[0];
     settings->fixation = (enum protocol_fixation)chosen[1];
     settings->foveate = (enum protocol_foveate)chosen[2];
     settings->advance = (enum protocol_advance)chosen[3];
+    settings->pace = (enum protocol_pace)chosen[4];
+    return true;
+}
 
+static bool times_read(struct reader *reader, const struct yaml_node *map, struct protocol_settings *settings)
+{
     const struct {
         const char *key;
         int64_t *into;
     } times[] = {
-        {"view_s", &settings->view_ns}, {"confirm_s", &settings->confirm_ns}, {"rest_s", &settings->rest_ns}};
-    for (uint32_t i = 0; i < 3; i++) {
-        const struct yaml_node *node = yaml_get(map, times[i].key);
-        if (node && !read_seconds(reader, node, times[i].key, 3600, times[i].into))
+        {"path_start_s", &settings->path_start_ns},
+        {"view_s", &settings->view_ns},
+        {"gap_s", &settings->gap_ns},
+        {"min_exposure_s", &settings->min_exposure_ns},
+        {"deadline_s", &settings->deadline_ns},
+        {"confirm_s", &settings->confirm_ns},
+        {"rest_s", &settings->rest_ns},
+    };
+    for (uint32_t i = 0; i < sizeof times / sizeof times[0]; i++)
+        if (!key_seconds(reader, map, &language_settings, times[i].key, times[i].into))
             return false;
-    }
+    return true;
+}
+
+static bool asked_read(struct reader *reader, const struct yaml_node *map, struct protocol_settings *settings)
+{
+    const char *names[PROTOCOL_QUESTIONS + 1] = {NULL};
+    for (uint32_t i = 0; i < reader->protocol->question_count; i++)
+        names[i] = reader->protocol->questions[i].name;
+    uint32_t count_question = 0, found = 0;
+    int64_t spheres[2] = {settings->spheres[0], settings->spheres[1]};
+    if (!key_names(reader, map, "question", "question", names, PROTOCOL_ASKED, settings->asked,
+                   &settings->asked_count) ||
+        !key_names(reader, map, "ratings", "question", names, PROTOCOL_ASKED, settings->ratings,
+                   &settings->rating_count) ||
+        !key_names(reader, map, "count", "question", names, 1, &count_question, &found) ||
+        !key_range(reader, map, "spheres", 1, 64, spheres))
+        return false;
+    if (found)
+        settings->count_question = (int32_t)count_question;
+    settings->spheres[0] = (uint32_t)spheres[0];
+    settings->spheres[1] = (uint32_t)spheres[1];
     return true;
 }
 
 bool settings_read(struct reader *reader, const struct yaml_node *map, struct protocol_settings *settings)
 {
+    const struct catalogue *catalogue = reader->catalogue;
+    const char *more[CATALOGUE_SETTINGS + 1] = {NULL};
     if (!map)
         return true;
-    const struct catalogue *catalogue = reader->catalogue;
-    const char *known[16 + CATALOGUE_SETTINGS] = {"camera", "fixation",  "foveate", "advance",  "fade",
-                                                  "view_s", "confirm_s", "rest_s",  "question", NULL};
     for (uint32_t i = 0; i < catalogue->setting_count; i++)
-        known[9 + i] = catalogue->settings[i].name;
-    if (!read_keys(reader, map, "settings", known) || !plain_read(reader, map, settings))
-        return false;
-    const struct yaml_node *fade = yaml_get(map, "fade"), *question = yaml_get(map, "question");
-    if (fade && !fade_read(reader, fade, settings))
-        return false;
-    if (question && !question_read(reader, question, &settings->question))
+        more[i] = catalogue->settings[i].name;
+    if (!read_section(reader, map, &language_settings, more) || !words_read(reader, map, settings) ||
+        !times_read(reader, map, settings) || !fade_read(reader, yaml_get(map, "fade"), settings) ||
+        !asked_read(reader, map, settings))
         return false;
     for (uint32_t i = 0; i < catalogue->setting_count; i++) {
         const struct yaml_node *node = yaml_get(map, catalogue->settings[i].name);

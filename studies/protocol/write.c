@@ -33,13 +33,22 @@ bool protocol_option_json(const struct protocol *protocol, const struct protocol
     return text_copy(&text, out, out_size);
 }
 
-bool protocol_settings_json(const struct protocol *protocol, const struct protocol_settings *settings,
-                            char *out, size_t out_size)
+static void seconds_write(struct text *text, const char *name, int64_t ns)
+{
+    if (ns == 0)
+        return;
+    text_add(text, ",\"%s\":", name);
+    text_number(text, (double)ns / 1e9);
+}
+
+bool protocol_settings_json(const struct protocol *protocol, enum protocol_kind kind,
+                            const struct protocol_settings *settings, const char *more, char *out,
+                            size_t out_size)
 {
     const struct catalogue *catalogue = protocol->catalogue;
     struct text text = {0};
-    text_add(&text, "{\"camera\":\"%s\",\"foveate\":\"%s\"", protocol_camera_name(settings->camera),
-             protocol_foveate_name(settings->foveate));
+    text_add(&text, "{\"procedure\":\"%s\",\"camera\":\"%s\",\"foveate\":\"%s\"", protocol_kind_name(kind),
+             protocol_camera_name(settings->camera), protocol_foveate_name(settings->foveate));
     for (uint32_t i = 0; i < catalogue->setting_count; i++) {
         text_add(&text, ",");
         value_write(&text, &catalogue->settings[i], settings->render[i]);
@@ -49,7 +58,13 @@ bool protocol_settings_json(const struct protocol *protocol, const struct protoc
         text_add(&text, i ? "," : ",\"fade_s\":[");
         text_number(&text, (double)fades[i] / 1e9);
     }
-    text_add(&text, "]}");
+    text_add(&text, "]");
+    seconds_write(&text, "path_start_s", settings->path_start_ns);
+    seconds_write(&text, "view_s", settings->view_ns);
+    seconds_write(&text, "gap_s", kind == PROTOCOL_SEQUENTIAL ? settings->gap_ns : 0);
+    seconds_write(&text, "min_exposure_s", settings->min_exposure_ns);
+    seconds_write(&text, "deadline_s", settings->deadline_ns);
+    text_add(&text, "%s}", more);
     return text_copy(&text, out, out_size);
 }
 

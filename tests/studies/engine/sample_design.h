@@ -17,7 +17,8 @@ static inline struct protocol *sample_design(const char *scenes, const char *des
     snprintf(text, sizeof text,
              "fovstudy: 1\nname: sample\ntitle: t\nseed: 0\nscenes: %s\n"
              "options: {f: {mode: time_warped, epsilon: 0.1}, r: {mode: regular}}\nreference: r\n"
-             "questions: {q: {text: Which?}, z: {text: How?, scale: [1, 10]}}\ninstructions: i\n"
+             "questions: {q: {text: Which?}, z: {text: How?, scale: [1, 10]}, n: {text: How many?, count: [0, "
+             "9]}}\ninstructions: i\n"
              "consent: {version: 1, text: c}\nsettings: {question: q}\n"
              "blocks:\n"
              "- {name: before, kind: rate, options: [f, r], settings: {question: z}}\n"

@@ -53,9 +53,13 @@ static void check(const struct plan *plan)
                 continue;
             uint32_t level = 0;
             if (f >= 0) { // the level by its value, as it is shown
+                static const char *const parameters[] = {"epsilon", "fovea_deg", "periphery_deg", "hole_decay"};
                 const struct protocol_factor *factor = &block->factors[f];
-                double value = plan->conditions[trial->option[trial->test_slot]].values[factor->parameter];
-                while (factor->levels[level] < value || factor->levels[level] > value)
+                uint32_t parameter = 0;
+                while (strcmp(parameters[parameter], factor->name) != 0)
+                    assert_true(++parameter < 4);
+                double value = plan->conditions[trial->option[trial->test_slot]].values[parameter];
+                while (atof(factor->level[level]) < value || atof(factor->level[level]) > value)
                     assert_true(++level < factor->level_count);
             } else {
                 cells[trial->cell]++;

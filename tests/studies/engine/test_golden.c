@@ -10,14 +10,35 @@
 
 #include <cmocka.h>
 
-enum { DESIGNS = 3, SEEDS = 10, NUMBERS = 12 };
+enum { DESIGNS = 9, SEEDS = 10, NUMBERS = 12 };
 
 static struct protocol *design(int index)
 {
-    static const char *const scenes[DESIGNS] = {"[atrium, town]", "[atrium]", "[atrium, town, yard]"};
+    static const char *const scenes[DESIGNS] = {
+        "[atrium, town]",
+        "[atrium]",
+        "[atrium, town, yard]",
+        "[atrium, town]",
+        "[atrium, {name: bistro, stand_in: town, labels: {type: real}}]",
+        "[atrium, town]",
+        "[atrium, town, yard]",
+        "[atrium]",
+        "[atrium, town]"};
     static const char *const block[DESIGNS] = {
-        SAMPLE_NINE, "  factors: {epsilon: [0.2, 0.1]}\n  repetitions: 3\n",
-        "  factors: {epsilon: [0.2, 0.1, 0.05, 0.025], splat: [atomic, points]}\n"};
+        SAMPLE_NINE,
+        "  factors: {epsilon: [0.2, 0.1]}\n  repetitions: 3\n",
+        "  factors: {epsilon: [0.2, 0.1, 0.05, 0.025], splat: [atomic, points]}\n",
+        "  factors: {epsilon: [0.2, 0.1, 0.05, 0.025]}\n  repetitions: 2\n  order: latin\n",
+        "  factors: {epsilon: [0.2, 0.1, 0.05]}\n  repetitions: 2\n  order: latin\n",
+        "  factors:\n    epsilon: [0.2, 0.1]\n    group: {between: yes, levels: {a: {}, b: {settings: {camera: "
+        "still}}}}\n"
+        "  repetitions: 4\n  order: block_random\n",
+        "  factors: {scene: {scenes: all}, epsilon: [0.2, 0.1]}\n  null: 3\n  catch: {count: 2, option: f, "
+        "parameters: {f: {epsilon: 1}}}\n",
+        "  order: fixed\n  trials: [{name: one, labels: {test: I}}, {options: [r, f]}, {role: 'null'}]\n",
+        "  factors: {fixation: {levels: {cross: {settings: {fixation: cross, foveate: target}}, moving: "
+        "{settings: "
+        "{fixation: moving}}}}}\n  repetitions: 2\n  settings: {spheres: [2, 6], count: n}\n"};
     char error[PROTOCOL_ERROR] = "";
     struct protocol *protocol = sample_design(scenes[index], block[index], error, sizeof error);
     if (!protocol)

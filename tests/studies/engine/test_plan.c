@@ -100,9 +100,12 @@ static void check_participant(const struct plan *plan)
         const struct plan_condition *other = &plan->conditions[trial->option[1 - (int)trial->test_slot]];
         assert_string_equal(test->mode, "time_warped");
         assert_string_equal(other->mode, "regular");
+        static const char *const parameters[] = {"epsilon", "fovea_deg", "periphery_deg", "hole_decay", NULL};
         for (uint32_t f = 0; f < block->factor_count; f++)
-            assert_true(test->values[block->factors[f].parameter] ==
-                        block->factors[f].levels[level_of(block, trial->cell, f)]);
+            for (uint32_t p = 0; parameters[p]; p++)
+                if (strcmp(block->factors[f].name, parameters[p]) == 0)
+                    assert_true(test->values[p] ==
+                                atof(block->factors[f].level[level_of(block, trial->cell, f)]));
     }
     for (uint32_t i = 0; i < 4; i++)
         for (uint32_t k = 0; k < 4; k++)
@@ -253,11 +256,11 @@ static void test_fixed_order_and_listed_trials(void **state)
         struct plan *plan = plan_create(protocol, 1, number);
         assert_int_equal(plan->trial_count, 6);
         for (uint32_t i = 0; i < 4; i++)
-            assert_true(plan->trials[1 + i].cell == i / 2 && plan->trials[1 + i].repetition == i % 2);
+            assert_true(plan->trials[1 + i].cell == i % 2 && plan->trials[1 + i].repetition == i / 2);
         assert_string_equal(plan->trials[1].factors, "{\"trial\":\"x\"}");
-        assert_string_equal(plan->trials[3].factors, "{\"trial\":2}");
+        assert_string_equal(plan->trials[2].factors, "{\"trial\":2}");
         assert_string_equal(plan->trials[1].scene, "town");
-        assert_non_null(strstr(plan->trials[3].settings, "\"still\""));
+        assert_non_null(strstr(plan->trials[2].settings, "\"still\""));
         assert_true(plan->conditions[plan->trials[1].option[plan->trials[1].test_slot]].values[0] == 0.5);
         plan_destroy(plan);
     }

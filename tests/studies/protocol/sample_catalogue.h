@@ -20,7 +20,14 @@ static inline const struct catalogue *sample_catalogue(void)
     static const struct catalogue_mode modes[] = {{"regular", 0, 0}, {"time_warped", time_warped, 6}};
     static const char *const scenes[] = {"atrium", "town", "yard"};
     static const struct catalogue_parameter settings[] = {{"moving_objects", "", 0, 1, 0, switched}};
-    static const struct catalogue catalogue = {modes, 2, scenes, 3, settings, 1};
+    static const char *const missing[] = {"ray_traced", 0};
+    static const struct catalogue catalogue = {.modes = modes,
+                                               .mode_count = 2,
+                                               .missing_modes = missing,
+                                               .scenes = scenes,
+                                               .scene_count = 3,
+                                               .settings = settings,
+                                               .setting_count = 1};
     return &catalogue;
 }
 

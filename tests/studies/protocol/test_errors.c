@@ -95,9 +95,9 @@ static void test_names(void **state)
         {"", "title:", "titel:",
          "p.yaml:3:1: in the protocol, key 'titel' is not known here; did you mean 'title'?"},
         {"", "seed:", "x:",
-         "p.yaml:4:1: in the protocol, key 'x' is not known here; known: fovstudy, name, title, seed, scenes, "
-         "options, "
-         "reference, settings, questions, instructions, consent, participant, analysis, blocks"},
+         "p.yaml:4:1: in the protocol, key 'x' is not known here; known: fovstudy, name, title, seed, "
+         "participants, sessions, scenes, options, reference, settings, questions, instructions, consent, "
+         "participant, exclude, analysis, blocks"},
         {"", "time_warped", "time_wrapped",
          "p.yaml:7:20: mode 'time_wrapped' is not known here; did you mean 'time_warped'?"},
         {"", "epsilon: 0.1", "epsilno: 0.1",
@@ -118,8 +118,7 @@ static void test_names(void **state)
          "p.yaml:27:15: option 'foveatd' is not known here; did you mean 'foveated'?"},
         {"before", "kind: rate", "kind: rat",
          "p.yaml:22:11: kind 'rat' is not known here; did you mean 'rate'?"},
-        {"main", "kind: toggle", "kind: staircase",
-         "p.yaml:26:11: kind 'staircase' is not run by this version; it runs toggle and rate"},
+        {"main", "kind: toggle", "kind: staircase", "p.yaml:26:5: the staircase block"},
         {"", "fovea_deg", "fovea_dg",
          "p.yaml:30:26: parameter of time_warped 'fovea_dg' is not known here; did you mean 'fovea_deg'?"},
         {"", "epsilon: [", "epsilom: [",
@@ -133,7 +132,7 @@ static void test_names(void **state)
         {"", "type: integer", "type: int",
          "p.yaml:17:23: type 'int' is not known here; known: integer, number, text, choice"},
         {"", "levels:", "level:",
-         "p.yaml:30:37: in a factor, key 'level' is not known here; did you mean 'levels'?"},
+         "p.yaml:30:37: in the factor, key 'level' is not known here; did you mean 'levels'?"},
     };
     expect_all(cases, sizeof cases / sizeof cases[0]);
 }
@@ -161,7 +160,7 @@ static void test_values(void **state)
          "p.yaml:1:11: fovstudy (the version of the protocol language) is 2; it must lie between 1 and 1"},
         {"", "name: good", "name: a b", "p.yaml:2:7: name 'a b' is not a name; use letters, digits, _ and -"},
         {"", "scale: [1, 10]", "scale: [10, 1]",
-         "p.yaml:12:32: the scale ends at 1, not above its begin 10; swap them"},
+         "p.yaml:12:32: scale ends at 1, below its begin 10; swap them"},
         {"", "scale: [1, 10]", "scale: 10",
          "p.yaml:12:32: scale is a list; write [..., ...] or one '- ' line each"},
         {"", "[0.2, 0.1]", "[0.2, 2]", "p.yaml:29:22: time_warped.epsilon is 2; it must lie between 0 and 1"},
@@ -183,15 +182,15 @@ static void test_structure(void **state)
         {"", "  regular: {mode: regular}\n", "  regular: {epsilon: 1}\n",
          "p.yaml:8:12: the option has no 'mode'; add it"},
         {"", "options:\n", "options: 3\nx:\n",
-         "p.yaml:7:1: in the protocol, key 'x' is not known here; known: fovstudy, name, title, seed, scenes, "
-         "options, "
-         "reference, settings, questions, instructions, consent, participant, analysis, blocks"},
+         "p.yaml:7:1: in the protocol, key 'x' is not known here; known: fovstudy, name, title, seed, "
+         "participants, sessions, scenes, options, reference, settings, questions, instructions, consent, "
+         "participant, exclude, analysis, blocks"},
         {"", "consent: {version: 1, text: Agree?}", "consent: yes",
          "p.yaml:14:10: consent is a mapping; write 'key: value' below it"},
         {"main", "[foveated, regular]", "[foveated]",
          "p.yaml:27:14: options of a toggle block has 1 entries; it takes 2 to 2"},
         {"main", "[foveated, regular]", "[regular, regular]",
-         "p.yaml:27:14: both options are 'regular'; name two"},
+         "p.yaml:27:24: option 'regular' stands here twice; keep one"},
         {"", "name: main", "name: before", "p.yaml:25:11: block 'before' stands here twice; rename one"},
         {"", "question: prefer}", "camera2: x}",
          "p.yaml:15:26: in settings, key 'camera2' is not known here; did you mean 'camera'?"},
@@ -206,15 +205,16 @@ static void test_structure(void **state)
         {"after", "complement_of: before", "complement_of: main",
          "p.yaml:34:20: a complement is a rate block of an earlier rate block that is none itself"},
         {"after", "complement_of: before", "repetitions: 2",
-         "p.yaml:34:5: a rate block is one rating; factors, trials and repetitions need 'kind: toggle'"},
+         "p.yaml:34:5: a rate block of two options is one rating of the option drawn; for repetitions name one "
+         "option"},
         {"main", "    factors:\n", "    trials: [{}]\n    factors:\n",
          "p.yaml:28:5: a block has either factors or trials; remove one"},
         {"main", "    factors:\n", "    repetitions: 200\n    factors:\n",
          "p.yaml:25:5: block 'main' has 800 trials; at most 512 fit"},
         {"", "fovea: {parameter: fovea_deg,", "fovea: {parameter: epsilon,",
-         "p.yaml:30:44: time_warped.epsilon is 17; it must lie between 0 and 1"},
+         "p.yaml:30:7: factor 'fovea' varies the same as 'epsilon'; keep one"},
         {"", "fovea: {parameter: fovea_deg, levels: [17, 10]", "fovea: {parameter: epsilon, levels: [1]",
-         "p.yaml:30:7: factor 'fovea' varies the same parameter as 'epsilon'; keep one"},
+         "p.yaml:30:7: factor 'fovea' varies the same as 'epsilon'; keep one"},
         {"", "type: integer, min: 18", "type: choice", "p.yaml:17:5: the attribute has no 'choices'; add them"},
         {"", "type: integer", "type: text", "p.yaml:17:29: min and max are for numbers; remove them"},
     };

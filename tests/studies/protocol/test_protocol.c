@@ -34,12 +34,13 @@ static void test_calibration_is_the_papers(void **state)
     assert_int_equal(block->kind, PROTOCOL_TOGGLE);
     assert_int_equal(protocol_block_trials(block), 9);
     assert_int_equal(block->factor_count, 2);
-    const double levels[2][3] = {{0.2, 0.1, 0.05}, {17, 10, 6}};
+    static const char *const levels[2][3] = {{"0.2", "0.1", "0.05"}, {"17", "10", "6"}};
     for (uint32_t f = 0; f < 2; f++) {
         assert_int_equal(block->factors[f].level_count, 3);
         for (uint32_t i = 0; i < 3; i++)
-            assert_true(block->factors[f].levels[i] == levels[f][i]);
+            assert_string_equal(block->factors[f].level[i], levels[f][i]);
     }
+    assert_true(block->cells[5].option[0].values[0] == 0.1 && block->cells[5].option[0].values[1] == 6);
     assert_int_equal(block->settings.fade_to_gray_ns + block->settings.fade_gray_ns +
                          block->settings.fade_from_gray_ns,
                      500000000);
@@ -51,7 +52,7 @@ static void test_calibration_is_the_papers(void **state)
     assert_int_equal(p->blocks[0].kind, PROTOCOL_RATE);
     assert_true(tested->values[0] == 0.1 && tested->values[1] == 10); // what the ratings show
     assert_int_equal(p->blocks[2].complement_of, 0);
-    const struct protocol_question *question = &p->questions[p->blocks[2].settings.question];
+    const struct protocol_question *question = &p->questions[p->blocks[2].settings.asked[0]];
     assert_true(question->scale_min == 1 && question->scale_max == 10);
     assert_string_equal(question->label_max, "very good");
     assert_string_equal(p->consent_version, "1");
@@ -94,11 +95,12 @@ static void test_settings_cascade(void **state)
     assert_string_equal(error, "");
     const struct protocol_block *block = &p->blocks[0];
     assert_int_equal(protocol_block_trials(block), 2);
-    const struct protocol_trial *one = &block->trials[0], *two = &block->trials[1];
-    assert_string_equal(one->name, "one");
+    const struct protocol_cell *one = &block->cells[0], *two = &block->cells[1];
+    assert_string_equal(one->labels, ",\"trial\":\"one\"");
     assert_int_equal(one->scene, 1);
     assert_int_equal(two->scene, -1);
-    assert_true(one->a.values[0] == 0.3 && one->a.values[5] == 1 && two->a.values[0] == 0.2);
+    assert_true(one->option[0].values[0] == 0.3 && one->option[0].values[5] == 1 &&
+                two->option[0].values[0] == 0.2);
     assert_int_equal(one->settings.camera, PROTOCOL_CAMERA_STILL);
     assert_int_equal(one->settings.confirm_ns, 2000000000);
     assert_int_equal(one->settings.fade_to_gray_ns, 500000000);
@@ -106,19 +108,20 @@ static void test_settings_cascade(void **state)
     assert_int_equal(two->settings.fade_gray_ns, 2000000000);
     assert_int_equal(two->settings.fade_to_gray_ns, 500000000);
     assert_true(one->settings.render[0] == 1 && two->settings.render[0] == 0);
-    assert_int_equal(one->settings.question, 0);
-    assert_int_equal(two->settings.question, 1);
+    assert_int_equal(one->settings.asked[0], 0);
+    assert_int_equal(two->settings.asked[0], 1);
 
     char json[1024];
-    assert_true(protocol_option_json(p, &one->a, json, sizeof json));
+    assert_true(protocol_option_json(p, &one->option[0], json, sizeof json));
     assert_string_equal(json, "{\"epsilon\":0.3,\"fovea_deg\":10,\"periphery_deg\":30,\"hole_decay\":0.6,"
                               "\"dynamic_objects\":\"foveated\",\"splat\":\"points\"}");
-    assert_true(protocol_option_json(p, &one->b, json, sizeof json));
+    assert_true(protocol_option_json(p, &one->option[1], json, sizeof json));
     assert_string_equal(json, "{}");
-    assert_true(protocol_settings_json(p, &two->settings, json, sizeof json));
-    assert_string_equal(json, "{\"camera\":\"still\",\"foveate\":\"gaze\",\"moving_objects\":\"off\","
-                              "\"fade_s\":[0.5,2,0.125]}");
-    assert_false(protocol_option_json(p, &one->a, json, 20));
+    assert_true(protocol_settings_json(p, block->kind, &two->settings, "", json, sizeof json));
+    assert_string_equal(
+        json, "{\"procedure\":\"toggle\",\"camera\":\"still\",\"foveate\":\"gaze\",\"moving_objects\":\"off\","
+              "\"fade_s\":[0.5,2,0.125]}");
+    assert_false(protocol_option_json(p, &one->option[0], json, 20));
     protocol_destroy(p);
 }
 
