@@ -103,6 +103,8 @@ static bool design_read(struct reader *reader, const struct yaml_node *map, stru
         !extras_read(reader, map, block) || !adjusts_read(reader, map, block))
         return false;
     block->order = (enum protocol_order)order;
+    if (!staircase_read(reader, map, block))
+        return false;
     if (protocol_block_trials(block) > PROTOCOL_TRIALS)
         return read_fail(reader, map, "block '%s' has %u trials; at most %d fit", block->name,
                          protocol_block_trials(block), PROTOCOL_TRIALS);

@@ -112,7 +112,8 @@ static bool question_check(struct reader *reader, const struct yaml_node *node,
         if (rates && question->type != PROTOCOL_ASK_RATING)
             return read_fail(reader, node, "block '%s' rates, but question '%s' has no 'scale'; add one",
                              block->name, question->name);
-        if (!rates && question->type != PROTOCOL_ASK_CHOICE)
+        bool scale_too = block->kind == PROTOCOL_STAIRCASE && question->type == PROTOCOL_ASK_RATING;
+        if (!rates && question->type != PROTOCOL_ASK_CHOICE && !scale_too)
             return read_fail(reader, node,
                              "block '%s' lets one choose, but question '%s' has a scale; ask another",
                              block->name, question->name);

@@ -257,6 +257,12 @@ static const struct language_key block_keys[] = {
     {"adjust", LANGUAGE_TABLE, false, 1, 4, .of = "the adjustment",
      .about = "Of an adjust block: parameters of the option under test that the participant sets.",
      .example = "adjust: {epsilon: {start: [0.05, 0.5], step: 0.01}}"},
+    {"staircase", LANGUAGE_MAP, false, .of = "the staircase",
+     .about =
+         "Of a staircase block: the parameter and how answers choose its level. Each cell is one staircase; "
+         "they take turns at random.",
+     .example = "staircase: {parameter: epsilon, method: 1up2down, larger: easier, level: {min: 0.01, max: 1}, "
+                "start: 0.5, steps: [0.1, 0.05], trials: 40}"},
     {"break_every", LANGUAGE_INTEGER, false, 1, 512, .about = "A break after so many trials.",
      .example = "break_every: 24"},
     {"break_s", LANGUAGE_SECONDS, false, 0, 3600, .fallback = "0", .about = "Least length of a break.",
@@ -329,6 +335,62 @@ static const struct language_key adjust_keys[] = {
     {0},
 };
 
+static const struct language_key staircase_keys[] = {
+    {"parameter", LANGUAGE_NAME, true, .about = "A number among the parameters of the option under test.",
+     .example = "parameter: epsilon"},
+    {"method", LANGUAGE_WORD, true, .words = WORDS("1up2down", "weighted", "quest_plus"),
+     .about = "Levitt 1971; Kaernbach 1991; Watson 2017.", .example = "method: quest_plus"},
+    {"larger", LANGUAGE_WORD, true, .words = WORDS("easier", "harder"),
+     .about = "Whether larger levels make the right answer easier or harder to find.",
+     .example = "larger: easier"},
+    {"level", LANGUAGE_MAP, true, .of = "the grid", .about = "Levels that may be shown.",
+     .example = "level: {min: 0.01, max: 1, count: 25, spacing: log}"},
+    {"trials", LANGUAGE_INTEGER, true, 1, 512, .about = "Most trials of one staircase.",
+     .example = "trials: 40"},
+    {"reversals", LANGUAGE_INTEGER, false, 1, 200, .about = "Of up-down: stop after so many.",
+     .example = "reversals: 12"},
+    {"start", LANGUAGE_NUMBER, false, -1e9, 1e9, .about = "Of up-down: the first level.",
+     .example = "start: 0.5"},
+    {"steps", LANGUAGE_LIST, false, 1, 16,
+     .about =
+         "Of up-down: sizes of the steps up to each reversal, the last from then on; with log spacing factors.",
+     .example = "steps: [0.1, 0.05, 0.02]"},
+    {"target", LANGUAGE_NUMBER, false, 0, 1, .about = "Of weighted: the share of right answers to settle at.",
+     .example = "target: 0.75"},
+    {"model", LANGUAGE_MAP, false, .of = "the model",
+     .about = "Of quest_plus: the psychometric functions it weighs.",
+     .example =
+         "model: {family: logistic, threshold: {min: 0.01, max: 1, count: 25, spacing: log}, slope: {min: 1, "
+         "max: 10, count: 10}, guess: {min: 0.5, max: 0.5}, lapse: {min: 0, max: 0.06, count: 4}}"},
+    {0},
+};
+
+static const struct language_key model_keys[] = {
+    {"family", LANGUAGE_WORD, true, .words = WORDS("logistic", "weibull", "normal", "gumbel"),
+     .about = "Shape of the psychometric function.", .example = "family: logistic"},
+    {"threshold", LANGUAGE_MAP, true, .of = "the grid", .about = "Thresholds, in the level's unit.",
+     .example = "threshold: {min: 0.01, max: 1, count: 25, spacing: log}"},
+    {"slope", LANGUAGE_MAP, true, .of = "the grid",
+     .about = "Slopes, per unit of the level (or of its logarithm).",
+     .example = "slope: {min: 1, max: 10, count: 10}"},
+    {"guess", LANGUAGE_MAP, false, .of = "the grid",
+     .about = "Shares of right answers by guessing; 0.5 of two options. Not with more outcomes than two.",
+     .example = "guess: {min: 0.5, max: 0.5}"},
+    {"lapse", LANGUAGE_MAP, false, .of = "the grid", .fallback = "0", .about = "Shares of lapses.",
+     .example = "lapse: {min: 0, max: 0.06, count: 4}"},
+    {0},
+};
+
+static const struct language_key grid_keys[] = {
+    {"min", LANGUAGE_NUMBER, true, -1e9, 1e9, .about = "First value.", .example = "min: 0.01"},
+    {"max", LANGUAGE_NUMBER, true, -1e9, 1e9, .about = "Last value.", .example = "max: 1"},
+    {"count", LANGUAGE_INTEGER, false, 1, 10000, .fallback = "1", .about = "How many values, ends included.",
+     .example = "count: 25"},
+    {"spacing", LANGUAGE_WORD, false, .words = WORDS("linear", "log"), .fallback = "linear",
+     .about = "Equal differences or equal ratios.", .example = "spacing: log"},
+    {0},
+};
+
 const struct language_section language_protocol = {"the protocol", "A study.", protocol_keys, false};
 const struct language_section language_scene = {"the scene", "A scene with what stands in for it.", scene_keys,
                                                 false};
@@ -358,12 +420,32 @@ const struct language_section language_catch = {"catch", "Trials with an obvious
                                                 false};
 const struct language_section language_adjust = {"the adjustment", "A parameter that the participant sets.",
                                                  adjust_keys, false};
+const struct language_section language_staircase = {"the staircase", "An adaptive method.", staircase_keys,
+                                                    false};
+const struct language_section language_model = {"the model", "What QUEST+ weighs.", model_keys, false};
+const struct language_section language_grid = {"the grid", "Values from one end to the other.", grid_keys,
+                                               false};
 
 const struct language_section *const language_sections[] = {
-    &language_protocol, &language_scene,     &language_option,   &language_settings,
-    &language_fade,     &language_question,  &language_consent,  &language_attribute,
-    &language_block,    &language_factor,    &language_level,    &language_catch,
-    &language_adjust,   &language_exclusion, &language_analysis, 0,
+    &language_protocol,
+    &language_scene,
+    &language_option,
+    &language_settings,
+    &language_fade,
+    &language_question,
+    &language_consent,
+    &language_attribute,
+    &language_block,
+    &language_factor,
+    &language_level,
+    &language_catch,
+    &language_adjust,
+    &language_staircase,
+    &language_model,
+    &language_grid,
+    &language_exclusion,
+    &language_analysis,
+    0,
 };
 
 const struct language_key *language_find(const struct language_section *section, const char *key)

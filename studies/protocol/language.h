@@ -42,7 +42,8 @@ struct language_section {
 
 extern const struct language_section language_protocol, language_scene, language_option, language_settings,
     language_fade, language_question, language_consent, language_attribute, language_analysis,
-    language_exclusion, language_block, language_factor, language_level, language_catch, language_adjust;
+    language_exclusion, language_block, language_factor, language_level, language_catch, language_adjust,
+    language_staircase, language_model, language_grid;
 extern const struct language_section
     *const language_sections[]; // all, in the order of the reference page; NULL ends
 

@@ -53,4 +53,7 @@ bool cells_read(struct reader *reader, const struct yaml_node *map, struct proto
 bool extras_read(struct reader *reader, const struct yaml_node *map, struct protocol_block *block);
 bool adjusts_read(struct reader *reader, const struct yaml_node *map, struct protocol_block *block);
 
+// staircase.c
+bool staircase_read(struct reader *reader, const struct yaml_node *map, struct protocol_block *block);
+
 #endif

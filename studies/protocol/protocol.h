@@ -7,6 +7,7 @@
 #ifndef STUDIES_PROTOCOL_PROTOCOL_H
 #define STUDIES_PROTOCOL_PROTOCOL_H
 
+#include "studies/engine/staircase.h"
 #include "studies/protocol/catalogue.h"
 #include "studies/protocol/sha256.h"
 
@@ -151,6 +152,13 @@ struct protocol_adjust {
     double start_min, start_max, step, min, max;
 };
 
+// How answers choose the level of a parameter of the option under test. The outcomes are those of the question:
+// wrong and right; wrong, equal and right; or the points of a scale.
+struct protocol_staircase {
+    uint32_t parameter; // index into that mode's parameters
+    struct staircase_desc desc;
+};
+
 // Null or catch trials among a block's own.
 struct protocol_extra {
     struct protocol_cell cell;
@@ -178,6 +186,8 @@ struct protocol_block {
     struct protocol_extra extras[2]; // null trials and catch trials; count 0: none
     struct protocol_adjust adjusts[PROTOCOL_ADJUSTED];
     uint32_t adjust_count;
+    struct protocol_staircase
+        staircase;        // of PROTOCOL_STAIRCASE; each cell is one staircase, its trials repetitions
     uint32_t break_every; // trials; 0: no breaks
     int64_t break_ns;     // least length of one
     struct protocol_settings settings;
