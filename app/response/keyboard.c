@@ -58,17 +58,43 @@ static enum keyboard_meaning rate(struct keyboard *keyboard, const struct machin
     return KEYBOARD_NOTHING;
 }
 
-static enum keyboard_meaning choose(const struct machine_view *view, int key, struct machine_event *out)
+static enum keyboard_meaning choose(const struct protocol_question *question, int key,
+                                    struct machine_event *out)
 {
-    if (view->trial && view->trial->kind == PROTOCOL_RATE)
-        return is_enter(key) ? event(out, MACHINE_START, 0) : KEYBOARD_NOTHING;
-    if (key == GLFW_KEY_SPACE)
-        return event(out, MACHINE_TOGGLE_KEY, 0);
     if (key == GLFW_KEY_LEFT || key == GLFW_KEY_A || digit(key) == 1)
         return event(out, MACHINE_CHOOSE, PLAN_SLOT_A);
     if (key == GLFW_KEY_RIGHT || key == GLFW_KEY_B || digit(key) == 2)
         return event(out, MACHINE_CHOOSE, PLAN_SLOT_B);
+    if (question->equal && (key == GLFW_KEY_DOWN || key == GLFW_KEY_E || digit(key) == 0))
+        return event(out, MACHINE_CHOOSE, PLAN_SLOT_NONE);
     return KEYBOARD_NOTHING;
+}
+
+static enum keyboard_meaning adjust(int key, struct machine_event *out)
+{
+    if (key == GLFW_KEY_UP || key == GLFW_KEY_DOWN)
+        return event(out, MACHINE_ADJUST, key == GLFW_KEY_UP ? 1 : -1);
+    return key == GLFW_KEY_TAB ? event(out, MACHINE_ADJUST_NEXT, 1) : KEYBOARD_NOTHING;
+}
+
+static enum keyboard_meaning look(const struct machine_view *view, int key, struct machine_event *out)
+{
+    if (key == GLFW_KEY_SPACE && view->trial && protocol_kind_is_pair(view->trial->kind))
+        return event(out, MACHINE_TOGGLE_KEY, 0);
+    if (is_enter(key))
+        return view->may_go_on ? event(out, MACHINE_START, 0) : KEYBOARD_NOTHING;
+    if (view->adjusted)
+        return adjust(key, out);
+    return view->question ? choose(view->question, key, out) : KEYBOARD_NOTHING;
+}
+
+static enum keyboard_meaning answer(struct keyboard *keyboard, const struct machine_view *view, int key,
+                                    struct machine_event *out)
+{
+    if (!view->question)
+        return KEYBOARD_NOTHING;
+    return view->question->type == PROTOCOL_ASK_CHOICE ? choose(view->question, key, out)
+                                                       : rate(keyboard, view, key, out);
 }
 
 static enum keyboard_meaning read_on(bool last_page, int key, struct machine_event *out)
@@ -101,11 +127,12 @@ static enum keyboard_meaning on_screen(struct keyboard *keyboard, const struct m
     case MACHINE_INSTRUCTIONS:
     case MACHINE_READY:
     case MACHINE_REST:
+    case MACHINE_BREAK:
         return read_on(last_page, key, out);
     case MACHINE_STIMULUS:
-        return choose(view, key, out);
+        return look(view, key, out);
     case MACHINE_QUESTION:
-        return view->question ? rate(keyboard, view, key, out) : KEYBOARD_NOTHING;
+        return answer(keyboard, view, key, out);
     case MACHINE_PAUSED:
         return is_enter(key) ? event(out, MACHINE_START, 0) : KEYBOARD_NOTHING;
     default:
@@ -113,12 +140,21 @@ static enum keyboard_meaning on_screen(struct keyboard *keyboard, const struct m
     }
 }
 
+// The selection belongs to one question about one option in one trial.
+static bool is_mine(const struct keyboard *keyboard, const struct machine_view *view)
+{
+    return keyboard->screen == view->screen && keyboard->trial == view->trial_index &&
+           keyboard->question == view->question && keyboard->subject == view->subject;
+}
+
 static void follow(struct keyboard *keyboard, const struct machine_view *view)
 {
-    if (view->screen != MACHINE_QUESTION || (keyboard->selecting && keyboard->trial != view->trial_index))
+    if (view->screen != MACHINE_QUESTION || (keyboard->selecting && !is_mine(keyboard, view)))
         keyboard->selecting = false;
     keyboard->screen = view->screen;
     keyboard->trial = view->trial_index;
+    keyboard->question = view->question;
+    keyboard->subject = view->subject;
 }
 
 enum keyboard_meaning keyboard_press(struct keyboard *keyboard, const struct machine_view *view, bool last_page,
@@ -127,6 +163,8 @@ enum keyboard_meaning keyboard_press(struct keyboard *keyboard, const struct mac
     follow(keyboard, view);
     if (key == GLFW_KEY_ESCAPE)
         return event(out_event, MACHINE_ABORT_KEY, 0);
+    if (key == GLFW_KEY_F12 && view->screen != MACHINE_CONSENT && view->screen != MACHINE_ABORT)
+        return event(out_event, MACHINE_FLAG, 0);
     if (key == GLFW_KEY_P && view->screen != MACHINE_CONSENT && view->screen != MACHINE_ABORT)
         return event(out_event, MACHINE_PAUSE, 0);
     return on_screen(keyboard, view, last_page, key, out_event);
@@ -134,7 +172,7 @@ enum keyboard_meaning keyboard_press(struct keyboard *keyboard, const struct mac
 
 int32_t keyboard_selected(const struct keyboard *keyboard, const struct machine_view *view)
 {
-    bool mine = keyboard->selecting && keyboard->screen == view->screen && keyboard->trial == view->trial_index;
+    bool mine = keyboard->selecting && is_mine(keyboard, view);
     int32_t none = view->question ? view->question->scale_min - 1 : -1;
     return mine ? keyboard->selected : none;
 }

@@ -12,8 +12,10 @@
 #include <stdint.h>
 
 struct keyboard {
-    enum machine_screen screen; // the selection belongs to this screen of this trial
+    enum machine_screen screen; // the selection belongs to this screen, trial, question and option
     uint32_t trial;
+    const struct protocol_question *question;
+    enum plan_slot subject;
     bool selecting;
     int32_t selected; // meaningful while selecting
 };

@@ -1,8 +1,9 @@
-// Screens and events. Trials' insides are in stimulus.c, what is on screen in view.c.
+// Screens and events. Which trial comes next and its answers are in course.c, what a trial shows in stimulus.c,
+// what is on screen in view.c.
 #include "studies/engine/machine_state.h"
 
+#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 // A new record at the queue's end. Where there is no memory left for it the session ends, since nothing may be
 // lost silently; NULL then.
@@ -27,6 +28,8 @@ struct machine_record *machine_push(struct machine *machine, enum machine_record
                                       .trial = in_trial ? machine->trial : UINT32_MAX,
                                       .attempt = in_trial ? machine->attempts[machine->trial] : 0,
                                       .slot = PLAN_SLOT_NONE,
+                                      .correct = -1,
+                                      .level = in_trial ? machine->level : NAN,
                                       .full_start_ns = -1,
                                       .full_end_ns = -1};
     return record;
@@ -49,17 +52,14 @@ struct machine *machine_create(const struct plan *plan, const struct machine_sta
         return NULL;
     *machine = (struct machine){.plan = plan,
                                 .now_ns = INT64_MIN,
+                                .last_trial = UINT32_MAX,
                                 .shown_block = UINT32_MAX,
-                                .done = calloc(plan->trial_count + 1, sizeof *machine->done),
-                                .attempts = calloc(plan->trial_count + 1, sizeof *machine->attempts)};
-    if (!machine->done || !machine->attempts) {
+                                .broken = UINT32_MAX,
+                                .level = NAN};
+    if (!course_create(machine, start)) {
         machine_destroy(machine);
         return NULL;
     }
-    if (start && start->done)
-        memcpy(machine->done, start->done, plan->trial_count * sizeof *machine->done);
-    if (start && start->attempts)
-        memcpy(machine->attempts, start->attempts, plan->trial_count * sizeof *machine->attempts);
     machine->text = plan->protocol->instructions;
     machine->screen = start && start->consented ? MACHINE_INSTRUCTIONS : MACHINE_CONSENT;
     return machine;
@@ -69,13 +69,12 @@ void machine_destroy(struct machine *machine)
 {
     if (!machine)
         return;
+    course_destroy(machine);
     free(machine->records);
-    free(machine->attempts);
-    free(machine->done);
     free(machine);
 }
 
-static void end(struct machine *machine, bool complete)
+void machine_end(struct machine *machine, bool complete)
 {
     machine->screen = MACHINE_END;
     machine->complete = complete;
@@ -85,61 +84,53 @@ static void end(struct machine *machine, bool complete)
         record->complete = complete;
 }
 
-uint32_t machine_next_trial(const struct machine *machine)
+int64_t machine_rest_ns(const struct machine *machine)
 {
-    uint32_t trial = 0;
-    while (trial < machine->plan->trial_count && machine->done[trial])
-        trial++;
-    return trial;
+    return machine->screen == MACHINE_BREAK ? machine_block(machine)->break_ns
+                                            : machine_running(machine)->resolved->rest_ns;
 }
 
-static void begin_trial(struct machine *machine)
+bool machine_may_go_on(const struct machine *machine)
 {
-    machine->screen = MACHINE_STIMULUS;
-    stimulus_begin(machine);
+    return machine->now_ns - machine->since_ns >= machine_rest_ns(machine);
 }
 
-// Towards the first trial that has no answer: its block's beginning where that is new, else `same_block`.
-static void go_on(struct machine *machine, enum machine_screen same_block)
+// Answers have a time; who is too late gets the trial again.
+static bool is_late(const struct machine *machine)
 {
-    machine->trial = machine_next_trial(machine);
-    if (machine->trial == machine->plan->trial_count) {
-        end(machine, true);
-        return;
-    }
-    uint32_t index = machine->plan->trials[machine->trial].block;
-    if (index == machine->shown_block) {
-        machine->screen = same_block;
-        return;
-    }
-    machine->shown_block = index;
-    machine->text = machine->plan->protocol->blocks[index].instructions;
-    machine->screen = *machine->text ? MACHINE_INSTRUCTIONS : MACHINE_READY;
+    int64_t deadline = machine_running(machine)->resolved->deadline_ns;
+    if (deadline <= 0 || machine->answers[machine->trial] > 0)
+        return false;
+    if (machine->screen == MACHINE_QUESTION)
+        return machine->now_ns - machine->asked_ns > deadline;
+    bool answers_here = machine_running(machine)->kind == PROTOCOL_TOGGLE ||
+                        machine_running(machine)->kind == PROTOCOL_STAIRCASE ||
+                        machine_running(machine)->kind == PROTOCOL_ADJUST;
+    return machine->screen == MACHINE_STIMULUS && answers_here && machine->stimulus.full_ns >= 0 &&
+           stimulus_reaction(machine, machine->now_ns) > deadline;
 }
 
 // What passes with time alone.
 static void advance(struct machine *machine)
 {
-    if (machine->paused || machine->asking || machine->trial >= machine->plan->trial_count)
+    if (machine->paused || machine->asking || machine->trial >= course_places(machine))
         return;
-    const struct protocol_settings *settings = machine->plan->trials[machine->trial].resolved;
-    if (machine->screen == MACHINE_STIMULUS && settings->view_ns > 0 && machine->stimulus.full_ns >= 0 &&
-        machine->plan->trials[machine->trial].kind == PROTOCOL_RATE &&
-        stimulus_reaction(machine, machine->now_ns) >= settings->view_ns) {
+    if (machine->screen == MACHINE_STIMULUS && stimulus_timed_out(machine, machine->now_ns)) {
         stimulus_close_exposure(machine);
-        machine->screen = MACHINE_QUESTION;
+        course_ask(machine);
     }
-    if (machine->screen == MACHINE_CONFIRMATION &&
-        machine->now_ns - machine->since_ns >= settings->confirm_ns) {
-        machine->since_ns += settings->confirm_ns;
-        go_on(machine, MACHINE_REST);
+    if (is_late(machine))
+        course_invalid(machine, machine->trial, true);
+    if (machine->screen == MACHINE_CONFIRMATION) {
+        int64_t confirm = machine_running(machine)->resolved->confirm_ns;
+        if (machine->now_ns - machine->since_ns >= confirm) {
+            machine->since_ns += confirm;
+            course_go_on(machine, MACHINE_REST);
+        }
     }
-    if (machine->screen == MACHINE_REST) {
-        settings = machine->plan->trials[machine->trial].resolved;
-        if (settings->advance == PROTOCOL_ADVANCE_AUTO &&
-            machine->now_ns - machine->since_ns >= settings->rest_ns)
-            begin_trial(machine);
-    }
+    if (machine->screen == MACHINE_REST &&
+        machine_running(machine)->resolved->advance == PROTOCOL_ADVANCE_AUTO && machine_may_go_on(machine))
+        course_begin(machine);
 }
 
 static void tick(struct machine *machine, int64_t now_ns)
@@ -156,91 +147,109 @@ static void tick(struct machine *machine, int64_t now_ns)
     advance(machine);
 }
 
-static void answer(struct machine *machine, enum machine_record_kind kind, int32_t value)
+static void adjust(struct machine *machine, const struct machine_event *event)
 {
-    struct machine_record *record = machine_push(machine, kind, machine->now_ns);
-    if (!record)
+    const struct protocol_block *block = machine_block(machine);
+    uint32_t count = block->adjust_count;
+    if (event->kind == MACHINE_ADJUST_NEXT) {
+        machine->adjusting = (machine->adjusting + (event->value > 0 ? 1 : count - 1)) % count;
         return;
-    record->value = value;
-    record->slot = kind == MACHINE_CHOICE ? (enum plan_slot)value : PLAN_SLOT_A;
-    record->reaction_ns = stimulus_reaction(machine, machine->now_ns);
-    record->toggles = machine->stimulus.toggles;
-    machine->last_value = value;
-    machine_push(machine, MACHINE_TRIAL_DONE, machine->now_ns);
-    machine->screen = machine->screen == MACHINE_END ? MACHINE_END : MACHINE_STORING;
+    }
+    const struct protocol_adjust *limits = &block->adjusts[machine->adjusting];
+    double value = machine->adjusted[machine->adjusting] + event->value * limits->step;
+    value = value < limits->min ? limits->min : value > limits->max ? limits->max : value;
+    machine->adjusted[machine->adjusting] = value;
+    struct machine_record *record = machine_push(machine, MACHINE_ADJUSTED, machine->now_ns);
+    if (record) {
+        record->parameter = machine->adjusting;
+        record->numbers[0] = value;
+    }
 }
 
 static void stimulus_event(struct machine *machine, const struct machine_event *event)
 {
-    bool toggle_trial = machine->plan->trials[machine->trial].kind == PROTOCOL_TOGGLE;
-    const struct stimulus *s = &machine->stimulus;
-    if (event->kind == MACHINE_TOGGLE_KEY && toggle_trial) {
+    const struct plan_trial *trial = machine_running(machine);
+    bool toggles = protocol_kind_is_pair(trial->kind) && trial->kind != PROTOCOL_SEQUENTIAL;
+    struct machine_view view;
+    machine_look(machine, &view);
+    if (event->kind == MACHINE_TOGGLE_KEY && toggles) {
         stimulus_toggle(machine, machine->now_ns);
-    } else if (event->kind == MACHINE_CHOOSE && toggle_trial && (event->value == 0 || event->value == 1)) {
-        if (s->seen[0] && s->seen[1]) {
+    } else if (event->kind == MACHINE_CHOOSE && view.question &&
+               (event->value == PLAN_SLOT_A || event->value == PLAN_SLOT_B ||
+                (event->value == PLAN_SLOT_NONE && view.question->equal))) {
+        if (stimulus_seen(machine)) {
             stimulus_close_exposure(machine);
-            answer(machine, MACHINE_CHOICE, event->value);
+            course_answer(machine, MACHINE_CHOICE, event->value);
         } else {
             struct machine_record *record = machine_push(machine, MACHINE_CHOICE_EARLY, machine->now_ns);
             if (record)
                 record->slot = (enum plan_slot)event->value;
         }
-    } else if (event->kind == MACHINE_START && !toggle_trial && s->full_ns >= 0 &&
-               machine->plan->trials[machine->trial].resolved->view_ns == 0) {
+    } else if ((event->kind == MACHINE_ADJUST || event->kind == MACHINE_ADJUST_NEXT) &&
+               trial->kind == PROTOCOL_ADJUST && !machine->stimulus.starting) {
+        adjust(machine, event);
+    } else if (event->kind == MACHINE_START && view.may_go_on) {
         stimulus_close_exposure(machine);
-        machine->screen = MACHINE_QUESTION;
+        if (trial->kind == PROTOCOL_ADJUST && machine->answers[machine->trial] == 0)
+            course_answer(machine, MACHINE_RESPONSES, 0);
+        else
+            course_ask(machine);
     }
 }
 
-bool machine_may_go_on(const struct machine *machine)
+static void question_event(struct machine *machine, const struct machine_event *event)
 {
-    return machine->now_ns - machine->since_ns >= machine->plan->trials[machine->trial].resolved->rest_ns;
+    struct machine_ask ask;
+    machine_ask(machine->plan, machine_running(machine), machine->answers[machine->trial], &ask);
+    const struct protocol_question *question = ask.question;
+    if (event->kind == MACHINE_RATE && question->type != PROTOCOL_ASK_CHOICE &&
+        event->value >= question->scale_min && event->value <= question->scale_max)
+        course_answer(machine, question->type == PROTOCOL_ASK_COUNT ? MACHINE_RESPONSES : MACHINE_RATING,
+                      event->value);
+    else if (event->kind == MACHINE_CHOOSE && question->type == PROTOCOL_ASK_CHOICE &&
+             (event->value == PLAN_SLOT_A || event->value == PLAN_SLOT_B ||
+              (event->value == PLAN_SLOT_NONE && question->equal)))
+        course_answer(machine, MACHINE_CHOICE, event->value);
 }
 
 static void screen_event(struct machine *machine, const struct machine_event *event)
 {
-    const struct protocol_question *question;
     switch (machine->screen) {
     case MACHINE_CONSENT:
         if (event->kind == MACHINE_YES) {
             machine_push(machine, MACHINE_CONSENT_GIVEN, machine->now_ns);
             machine->screen = *machine->text ? MACHINE_INSTRUCTIONS : MACHINE_READY;
             if (!*machine->text)
-                go_on(machine, MACHINE_READY);
+                course_go_on(machine, MACHINE_READY);
         } else if (event->kind == MACHINE_NO) {
             machine_push(machine, MACHINE_CONSENT_REFUSED, machine->now_ns);
-            end(machine, false);
+            machine_end(machine, false);
         }
         break;
     case MACHINE_INSTRUCTIONS:
         if (event->kind == MACHINE_START && machine->shown_block == UINT32_MAX)
-            go_on(machine, MACHINE_READY);
+            course_go_on(machine, MACHINE_READY);
         else if (event->kind == MACHINE_START)
-            begin_trial(machine);
+            course_begin(machine);
         break;
     case MACHINE_READY:
         if (event->kind == MACHINE_START)
-            begin_trial(machine);
+            course_begin(machine);
         break;
     case MACHINE_STIMULUS:
         stimulus_event(machine, event);
         break;
     case MACHINE_QUESTION:
-        question = machine->plan->trials[machine->trial].question;
-        if (event->kind == MACHINE_RATE && event->value >= question->scale_min &&
-            event->value <= question->scale_max)
-            answer(machine, MACHINE_RATING, event->value);
+        question_event(machine, event);
         break;
     case MACHINE_STORING:
-        if (event->kind == MACHINE_ANSWER_STORED) {
-            machine->done[machine->trial] = true;
-            machine->screen = MACHINE_CONFIRMATION;
-            machine->since_ns = machine->now_ns;
-        }
+        if (event->kind == MACHINE_ANSWER_STORED)
+            course_stored(machine);
         break;
     case MACHINE_REST:
+    case MACHINE_BREAK:
         if (event->kind == MACHINE_START && machine_may_go_on(machine))
-            begin_trial(machine);
+            course_begin(machine);
         break;
     case MACHINE_CONFIRMATION:
     case MACHINE_PAUSED:
@@ -248,6 +257,15 @@ static void screen_event(struct machine *machine, const struct machine_event *ev
     case MACHINE_END:
         break;
     }
+}
+
+// The running trial while it runs, else the one answered last.
+static void flag(struct machine *machine)
+{
+    bool running = machine->screen == MACHINE_STIMULUS || machine->screen == MACHINE_QUESTION;
+    uint32_t place = running ? machine->trial : machine->last_trial;
+    if (place != UINT32_MAX && (!running || !machine->stimulus.starting))
+        course_invalid(machine, place, false);
 }
 
 static void suspend(struct machine *machine)
@@ -268,7 +286,7 @@ static void resume(struct machine *machine)
     if (machine->screen == MACHINE_STIMULUS)
         stimulus_resume(machine, passed);
     else if (machine->screen == MACHINE_QUESTION)
-        machine->stimulus.paused_full_ns += passed;
+        machine->asked_ns += passed;
 }
 
 // Pause and abort lie above every screen but those where an answer is on its way to the store and the end.
@@ -276,7 +294,7 @@ static bool suspension_event(struct machine *machine, const struct machine_event
 {
     if (machine->asking) {
         if (event->kind == MACHINE_YES) {
-            end(machine, false);
+            machine_end(machine, false);
         } else if (event->kind == MACHINE_NO || event->kind == MACHINE_ABORT_KEY) {
             machine->asking = false;
             machine_push(machine, MACHINE_ABORT_DECLINED, machine->now_ns);
@@ -312,8 +330,14 @@ void machine_event(struct machine *machine, int64_t now_ns, const struct machine
     tick(machine, now_ns);
     if (machine->screen == MACHINE_END)
         return;
-    if (machine->screen == MACHINE_STORING || !suspension_event(machine, event))
+    if (machine->screen == MACHINE_STORING) {
         screen_event(machine, event);
+    } else if (!suspension_event(machine, event)) {
+        if (event->kind == MACHINE_FLAG)
+            flag(machine);
+        else
+            screen_event(machine, event);
+    }
 }
 
 void machine_frame(struct machine *machine, int64_t now_ns, struct machine_view *out_view)

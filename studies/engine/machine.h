@@ -4,10 +4,10 @@
 //     machine_event(m, event_ns, &event)  for each key press, in order of time
 //     machine_frame(m, frame_ns, &view)   decides what the frame shown at frame_ns contains; show it
 //     while (machine_next_record(m, &record)) store it
-// When a record is an answer (MACHINE_CHOICE, MACHINE_RATING): commit it, write the event line, and only then
-// send MACHINE_ANSWER_STORED; the confirmation and the next stimulus wait for that. Does not: read a clock,
-// draw, write, know keys. Time is nanoseconds of the segment; a time before an earlier one counts as that
-// earlier one (and is recorded once as MACHINE_CLOCK_BACK).
+// When a record is an answer (MACHINE_CHOICE, MACHINE_RATING, MACHINE_RESPONSES): commit it, write the event
+// line, and only then send MACHINE_ANSWER_STORED; the next question, the confirmation and the next stimulus
+// wait for that. Does not: read a clock, draw, write, know keys. Time is nanoseconds of the segment; a time
+// before an earlier one counts as that earlier one (and is recorded once as MACHINE_CLOCK_BACK).
 //
 // A fade lasts from the last full frame of one option to the first full frame of the other; the option changes
 // in the middle of the gray. Frames that come so late that none would be gray do not skip it: the next frame is
@@ -16,19 +16,27 @@
 #define STUDIES_ENGINE_MACHINE_H
 
 #include "studies/engine/plan.h"
+#include "studies/engine/staircase.h"
 
 #include <stdbool.h>
 #include <stdint.h>
+
+// A trial is shown (STIMULUS), asked about (QUESTION, once for each of its asks that was not answered
+// meanwhile), and confirmed. One that is flagged as bad or whose answer came too late is invalid and comes
+// again after the plan.
+//
+// Trials are counted on: those of the plan, then the repetitions, each in its own place.
 
 enum machine_screen {
     MACHINE_CONSENT,      // consent text; waits for YES (or NO, which ends the session)
     MACHINE_INSTRUCTIONS, // protocol.instructions, then each block's own; waits for START
     MACHINE_READY,        // before the first trial of a block; waits for START
     MACHINE_STIMULUS,     // view.slot with view.fade
-    MACHINE_QUESTION,     // view.question; waits for RATE
+    MACHINE_QUESTION,     // view.question; waits for RATE or CHOOSE
     MACHINE_STORING,      // an answer waits for ANSWER_STORED; gray
     MACHINE_CONFIRMATION, // "thank you", for confirm_ns
     MACHINE_REST,         // gray between trials, at least rest_ns, then START or by itself
+    MACHINE_BREAK,        // the same, longer: the block's break_ns, then START
     MACHINE_PAUSED,       // waits for PAUSE or START
     MACHINE_ABORT,        // "really end?"; YES ends, NO goes back
     MACHINE_END           // complete or aborted
@@ -36,13 +44,16 @@ enum machine_screen {
 const char *machine_screen_name(enum machine_screen screen);
 
 enum machine_event_kind {
-    MACHINE_START,
+    MACHINE_START, // go on; in a trial: to the question, or an adjustment is done
     MACHINE_TOGGLE_KEY,
-    MACHINE_CHOOSE, // value: PLAN_SLOT_A or PLAN_SLOT_B
-    MACHINE_RATE,   // value: the rating
+    MACHINE_CHOOSE,      // value: PLAN_SLOT_A, PLAN_SLOT_B, or PLAN_SLOT_NONE for "equal"
+    MACHINE_RATE,        // value: the rating or count
+    MACHINE_ADJUST,      // value: steps of the current parameter, up or down
+    MACHINE_ADJUST_NEXT, // value: that many parameters on or back
     MACHINE_YES,
     MACHINE_NO,
     MACHINE_PAUSE,
+    MACHINE_FLAG, // the running trial, or the one just answered, is bad
     MACHINE_ABORT_KEY,
     MACHINE_ANSWER_STORED
 };
@@ -60,16 +71,24 @@ struct machine_view {
     enum machine_screen screen;
     enum machine_phase phase;
     const struct plan_trial *trial; // the running or next one; NULL when none is left
-    uint32_t trial_index;           // into plan.trials
+    uint32_t trial_index;           // its place, counted on over repetitions
     uint32_t attempt;               // of that trial, from 1
     enum plan_slot slot;            // option to draw; NONE: no stimulus (full gray behind any text)
     int32_t condition;              // that option's index into plan.conditions, -1 for none
     double fade;                    // 0 the image, 1 gray; 1 means nothing need be rendered
-    bool trial_started;             // this frame is the first of an attempt (a camera cut)
-    bool may_choose;                // STIMULUS: both options were seen fully; REST: START is taken now
-    int64_t stimulus_ns; // time on the trial's camera path: since its first frame, paused time taken out
-    const char *text;    // consent, instructions or question text to show; NULL where the screen has none
+    bool trial_started;             // this frame is the first of an attempt or of a showing (a camera cut)
+    bool may_choose;        // STIMULUS: both options were seen long enough; REST, BREAK: START is taken now
+    bool marker;            // between the two of a sequential trial: mark the middle
+    uint32_t showing;       // sequential: 0 the first, 1 the second
+    int64_t stimulus_ns;    // time on the trial's camera path: since its first frame, paused time taken out
+    int64_t wait_ns;        // REST, BREAK: until START is taken
+    double level;           // of a staircase's parameter in this trial; NaN: none
+    const double *adjusted; // values of block.adjusts; NULL: not an adjust trial
+    uint32_t adjusting;     // which one the keys change
+    const char *text;       // consent, instructions or question text to show; NULL where the screen has none
     const struct protocol_question *question; // of QUESTION and of a toggle trial; else NULL
+    enum plan_slot subject;                   // QUESTION: the option asked about; NONE: what was shown, or both
+    bool may_go_on;                           // STIMULUS: START leads on
     int32_t last_value;                       // CONFIRMATION: the answer (slot or rating)
     uint32_t done, total;                     // trials answered and planned
     bool complete;                            // END: all were answered; false: aborted or no consent
@@ -78,14 +97,19 @@ struct machine_view {
 enum machine_record_kind {
     MACHINE_CONSENT_GIVEN, // at_ns; before any trial
     MACHINE_CONSENT_REFUSED,
-    MACHINE_TRIAL_STARTED,  // at_ns: the first frame of the attempt
-    MACHINE_TRIAL_DONE,     // at_ns: the answer; comes right after its answer record
+    MACHINE_TRIAL_STARTED,  // at_ns: the first frame of the attempt; level
+    MACHINE_TRIAL_DONE,     // at_ns: the answer; comes right after the trial's last answer record
+    MACHINE_TRIAL_INVALID,  // flagged or too late (late tells)
+    MACHINE_TRIAL_REPEATED, // repeat_of: a new trial after all others
+    MACHINE_TRIAL_SKIPPED,  // its staircase has ended
     MACHINE_EXPOSURE,       // one stretch of one option
     MACHINE_TOGGLE,         // slot: the option it goes to
     MACHINE_TOGGLE_IGNORED, // during a fade
-    MACHINE_CHOICE_EARLY,   // slot: a decision before both were seen; not taken
-    MACHINE_CHOICE,         // an answer to store
-    MACHINE_RATING,         // an answer to store
+    MACHINE_CHOICE_EARLY,   // slot: a decision before both were seen long enough; not taken
+    MACHINE_ADJUSTED,       // parameter, number: its value from now on
+    MACHINE_CHOICE,         // an answer to store: slot (NONE: equal), correct, step
+    MACHINE_RATING,         // an answer to store: question, slot (NONE: the scene), value, step
+    MACHINE_RESPONSES,      // an answer to store: a count, or all values of an adjustment
     MACHINE_PAUSE_BEGAN,
     MACHINE_PAUSE_ENDED,
     MACHINE_ABORT_ASKED,
@@ -98,24 +122,41 @@ const char *machine_record_name(enum machine_record_kind kind); // a word for ev
 struct machine_record {
     enum machine_record_kind kind;
     int64_t at_ns;
-    uint32_t trial; // index into plan.trials; UINT32_MAX outside trials
+    uint32_t trial; // place, counted on over repetitions; UINT32_MAX outside trials
     uint32_t attempt;
-    enum plan_slot slot; // choice, toggle, exposure
-    // choice and rating
-    int32_t value;       // the rating
-    int64_t reaction_ns; // from the first full frame of the attempt, pauses taken out
+    enum plan_slot slot; // choice, rating, toggle, exposure
+    // answers
+    bool ends_trial; // the last one of its trial
+    int32_t value;   // the rating or count
+    const struct protocol_question *question;
+    int32_t correct;     // choice: 1 right, 0 wrong, -1 a preference
+    int32_t expected;    // count: the right one
+    int64_t reaction_ns; // from when the answer could be given, pauses taken out
     uint32_t toggles;    // of this attempt, ignored ones not counted
+    bool has_step;
+    struct staircase_step step;
+    // trial started, adjusted, responses of an adjustment
+    double level;       // NaN: no staircase
+    uint32_t parameter; // index into block.adjusts
+    double numbers[PROTOCOL_ADJUSTED];
+    uint32_t number_count; // 0: a count
     // exposure: frame times; first and last frame that showed any of it, and of those without fade (-1: none)
     int64_t start_ns, end_ns, full_start_ns, full_end_ns;
     int64_t value_ns;
+    uint32_t repeat_of;
+    bool late;
     bool complete;
 };
 
 // Where a session begins or goes on. Zeroed: a new one.
 struct machine_start {
     bool consented;           // consent is already stored (resume): no consent screen, no record
-    const bool *done;         // one per plan trial: already answered; NULL: none
+    const bool *done;         // one per trial, repetitions too: nothing is left to do; NULL: none
     const uint32_t *attempts; // attempts each trial already had; NULL: none
+    const uint32_t *answers;  // answers each trial already has; NULL: none
+    const int32_t *outcomes;  // of staircase trials, -1: no answer; NULL: none
+    const uint32_t *repeats;  // trials that come after the plan: which each repeats
+    uint32_t repeat_count;
 };
 
 struct machine;
@@ -128,5 +169,14 @@ void machine_frame(struct machine *machine, int64_t now_ns, struct machine_view 
 // The view as the last frame left it, without a new one; screen and trial already follow later events.
 void machine_look(const struct machine *machine, struct machine_view *out_view);
 bool machine_next_record(struct machine *machine, struct machine_record *out_record); // false: none waits
+// The plan's trial at a place counted on over repetitions.
+const struct plan_trial *machine_trial(const struct machine *machine, uint32_t place);
+// A trial's answers in their order: question and subject of each; false: no more.
+struct machine_ask {
+    const struct protocol_question *question; // NULL: the values of an adjustment
+    enum plan_slot subject;
+};
+bool machine_ask(const struct plan *plan, const struct plan_trial *trial, uint32_t index,
+                 struct machine_ask *out);
 
 #endif

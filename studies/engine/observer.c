@@ -10,7 +10,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum purpose { PURPOSE_KEY = 64, PURPOSE_WAIT, PURPOSE_TOGGLES, PURPOSE_DWELL, PURPOSE_CHOICE, PURPOSE_RATING };
+enum purpose {
+    PURPOSE_KEY = 64,
+    PURPOSE_WAIT,
+    PURPOSE_TOGGLES,
+    PURPOSE_DWELL,
+    PURPOSE_CHOICE,
+    PURPOSE_RATING,
+    PURPOSE_ADJUST
+};
+
+enum { OBSERVER_ADJUSTMENTS = 40 };
 
 static const struct knob {
     const char *name;
@@ -34,6 +44,8 @@ static const struct knob {
     {KNOB(rating_drop), 0, 100, 0.5},
     {KNOB(view_s), 0.05, 600, 4.5},
     {KNOB(answer_s), 0.05, 600, 1},
+    {KNOB(equal_band), 0, 20, 0.7}, // ours: "equal" in a third of looks at no difference
+    {KNOB(count_error), 0, 100, 0.5},
 #undef KNOB
 };
 
@@ -135,16 +147,6 @@ void observer_start(struct observer *observer, const struct observer_parameters 
                                   .looking = PLAN_SLOT_NONE};
 }
 
-double observer_probability_a(const struct observer_parameters *parameters,
-                              const struct observer_errors *errors)
-{
-    double difference = (errors->slot[1] - errors->slot[0]) / parameters->threshold;
-    double logit = parameters->side_bias;
-    if (difference > 0 || difference < 0) // an error that is no number is no difference
-        logit += copysign(log(3) * pow(fabs(difference), parameters->slope), difference);
-    return parameters->lapse / 2 + (1 - parameters->lapse) / (1 + exp(-logit));
-}
-
 // A log-normal time within two standard deviations, so that no wait is endless.
 static int64_t wait_ns(struct random_stream *stream, double median_s, double spread)
 {
@@ -186,18 +188,22 @@ static uint32_t plan_toggles(const struct observer *observer)
 
 static void arm_stimulus(struct observer *observer, int64_t now_ns, const struct machine_view *view)
 {
-    if (view->fade > 0 || view->slot == PLAN_SLOT_NONE || view->slot == observer->looking)
+    if (view->fade > 0 || view->slot == PLAN_SLOT_NONE || view->slot == observer->looking || !view->trial)
         return; // nothing new to look at yet
     observer->looking = view->slot;
-    bool rate = view->trial && view->trial->kind == PROTOCOL_RATE;
     struct random_stream stream = trial_stream(observer, PURPOSE_DWELL, observer->step);
-    if (rate)
+    enum machine_event_kind last = view->question ? MACHINE_CHOOSE : MACHINE_START;
+    if (view->trial->kind == PROTOCOL_SEQUENTIAL)
+        return; // it goes by itself
+    if (!protocol_kind_is_pair(view->trial->kind) && view->trial->resolved->view_ns > 0)
+        return;
+    if (!protocol_kind_is_pair(view->trial->kind))
         arm(observer, now_ns + wait_ns(&stream, observer->parameters.view_s, OBSERVER_ANSWER_SPREAD),
             MACHINE_START);
     else
         arm(observer,
             now_ns + wait_ns(&stream, observer->parameters.dwell_s, observer->parameters.dwell_spread),
-            observer->step < observer->toggles_planned ? MACHINE_TOGGLE_KEY : MACHINE_CHOOSE);
+            observer->step < observer->toggles_planned ? MACHINE_TOGGLE_KEY : last);
     observer->step++;
 }
 
@@ -208,6 +214,7 @@ static void arm_any(struct observer *observer, int64_t now_ns, const struct mach
         arm_screen(observer, now_ns, MACHINE_YES);
         break;
     case MACHINE_REST:
+    case MACHINE_BREAK:
         if (view->may_choose)
             arm_screen(observer, now_ns, MACHINE_START);
         break;
@@ -217,7 +224,9 @@ static void arm_any(struct observer *observer, int64_t now_ns, const struct mach
         arm_screen(observer, now_ns, MACHINE_START);
         break;
     case MACHINE_QUESTION:
-        arm_screen(observer, now_ns, MACHINE_RATE);
+        arm_screen(observer, now_ns,
+                   view->question && view->question->type == PROTOCOL_ASK_CHOICE ? MACHINE_CHOOSE
+                                                                                 : MACHINE_RATE);
         break;
     case MACHINE_ABORT:
         arm_screen(observer, now_ns, MACHINE_NO);
@@ -232,25 +241,94 @@ static void arm_any(struct observer *observer, int64_t now_ns, const struct mach
     }
 }
 
-static int32_t choose(const struct observer *observer, const struct observer_errors *errors)
+static double logit_a(const struct observer_parameters *parameters, const struct observer_errors *errors)
 {
+    double difference = (errors->slot[1] - errors->slot[0]) / parameters->threshold,
+           logit = parameters->side_bias;
+    if (difference > 0 || difference < 0) // an error that is no number is no difference
+        logit += copysign(log(3) * pow(fabs(difference), parameters->slope), difference);
+    return logit;
+}
+
+double observer_probability_a(const struct observer_parameters *parameters,
+                              const struct observer_errors *errors)
+{
+    return parameters->lapse / 2 + (1 - parameters->lapse) / (1 + exp(-logit_a(parameters, errors)));
+}
+
+static int32_t choose(const struct observer *observer, const struct observer_errors *errors, bool equal)
+{
+    const struct observer_parameters *p = &observer->parameters;
     struct random_stream stream = trial_stream(observer, PURPOSE_CHOICE, 0);
-    return random_unit(&stream) < observer_probability_a(&observer->parameters, errors) ? PLAN_SLOT_A
-                                                                                        : PLAN_SLOT_B;
+    double u = random_unit(&stream);
+    if (!equal)
+        return u < observer_probability_a(p, errors) ? PLAN_SLOT_A : PLAN_SLOT_B;
+    if (random_unit(&stream) < p->lapse)
+        return (int32_t)random_below(&stream, 3);
+    double latent = logit_a(p, errors) + log(u / (1 - u));
+    return latent > p->equal_band ? PLAN_SLOT_A : latent < -p->equal_band ? PLAN_SLOT_B : PLAN_SLOT_NONE;
+}
+
+// Names a draw by what is asked (Fowler, Noll and Vo's hash FNV-1a) and of which option.
+static uint32_t question_part(const struct machine_view *view)
+{
+    uint32_t hash = 2166136261u;
+    for (const char *c = view->question->name; *c; c++)
+        hash = (hash ^ (uint8_t)*c) * 16777619u;
+    return hash << 2 | (uint32_t)view->subject;
 }
 
 // The latent value falls between criteria half a point apart from the whole numbers; the ends take what lies
 // beyond.
 static int32_t rate(const struct observer *observer, const struct observer_errors *errors,
-                    const struct protocol_question *question)
+                    const struct machine_view *view)
 {
-    struct random_stream stream = trial_stream(observer, PURPOSE_RATING, 0);
+    const struct protocol_question *question = view->question;
     const struct observer_parameters *p = &observer->parameters;
-    double seen = isfinite(errors->slot[0]) ? errors->slot[0] / p->threshold : 0;
-    double latent = floor(p->rating_mean - p->rating_drop * seen + p->rating_sd * random_normal(&stream) + 0.5);
+    struct random_stream stream = trial_stream(observer, PURPOSE_RATING, question_part(view));
+    double error = errors->slot[view->subject == PLAN_SLOT_B],
+           seen = isfinite(error) ? error / p->threshold : 0;
+    double latent = p->rating_mean - p->rating_drop * seen + p->rating_sd * random_normal(&stream);
+    if (question->type == PROTOCOL_ASK_COUNT)
+        latent = view->trial->spheres[0] + view->trial->spheres[1] + p->count_error * random_normal(&stream);
+    latent = floor(latent + 0.5);
     return latent < question->scale_min   ? question->scale_min
            : latent > question->scale_max ? question->scale_max
                                           : (int32_t)latent;
+}
+
+// A step of the parameter in place of the end, as long as steps help.
+static bool adjust(struct observer *observer, const struct observer_errors *errors, struct machine_event *out)
+{
+    double difference = fabs(errors->slot[1] - errors->slot[0]);
+    if (!(difference > observer->parameters.threshold / 3) ||
+        observer->step > observer->toggles_planned + OBSERVER_ADJUSTMENTS)
+        return false;
+    struct random_stream stream = trial_stream(observer, PURPOSE_ADJUST, observer->step);
+    if (observer->direction == 0)
+        observer->direction = random_below(&stream, 2) ? 1 : -1;
+    else if (difference > observer->last_difference)
+        observer->direction = -observer->direction;
+    observer->last_difference = difference;
+    *out = (struct machine_event){MACHINE_ADJUST, observer->direction};
+    observer->looking = PLAN_SLOT_NONE; // looks again
+    return true;
+}
+
+// What an armed event comes to in the moment that it is due.
+static void decide(struct observer *observer, const struct machine_view *view,
+                   const struct observer_errors *errors, struct machine_event *out)
+{
+    if (out->kind == MACHINE_CHOOSE && view->screen == MACHINE_STIMULUS && !view->may_choose)
+        out->kind = MACHINE_TOGGLE_KEY; // not seen for long enough
+    else if (out->kind == MACHINE_CHOOSE)
+        out->value = choose(observer, errors, view->question && view->question->equal);
+    else if (out->kind == MACHINE_RATE)
+        out->value = view->question ? rate(observer, errors, view) : 0;
+    else if (out->kind == MACHINE_START && view->adjusted && !adjust(observer, errors, out) && !view->may_go_on)
+        out->kind = MACHINE_TOGGLE_KEY;
+    if (out->kind == MACHINE_TOGGLE_KEY || out->kind == MACHINE_START)
+        out->value = 0;
 }
 
 bool observer_next(struct observer *observer, int64_t now_ns, const struct machine_view *view,
@@ -266,6 +344,7 @@ bool observer_next(struct observer *observer, int64_t now_ns, const struct machi
         observer->trial = view->trial_index;
         observer->attempt = view->attempt;
         observer->step = 0;
+        observer->direction = 0;
         observer->toggles_planned = plan_toggles(observer);
     }
     if (!observer->armed)
@@ -276,9 +355,6 @@ bool observer_next(struct observer *observer, int64_t now_ns, const struct machi
     observer->events++;
     *out_at_ns = observer->due_ns;
     *out_event = observer->next;
-    if (out_event->kind == MACHINE_CHOOSE)
-        out_event->value = choose(observer, errors);
-    else if (out_event->kind == MACHINE_RATE)
-        out_event->value = view->question ? rate(observer, errors, view->question) : 0;
+    decide(observer, view, errors, out_event);
     return true;
 }

@@ -34,6 +34,8 @@ struct observer_parameters {
     double rating_drop;         // points lost per threshold of error
     double view_s;              // median time before asking for the rating question
     double answer_s;            // median time to answer a screen
+    double equal_band;          // where "equal" is an answer: logits around no difference that give it
+    double count_error;         // sd of a count, in things counted
     char errors[OBSERVER_PATH]; // the file of errors the caller reads; "" where not given
 };
 
@@ -41,7 +43,8 @@ void observer_defaults(struct observer_parameters *out);
 // "sim" or "sim:lapse=0.1,errors=FILE"; false with a sentence. A file name may not contain a comma.
 bool observer_parse(const char *spec, struct observer_parameters *out, char *error, size_t error_size);
 
-// Image error of each slot's option against the reference; larger is more visible. A rating reads [0].
+// Image error of each slot's option against the reference; larger is more visible. A rating reads its
+// subject's, of the scene [0].
 struct observer_errors {
     double slot[2];
 };
@@ -57,7 +60,9 @@ struct observer {
     uint32_t trial, attempt;
     uint32_t step, toggles_planned;
     enum plan_slot looking; // the option it has already dwelt on; NONE before the first
-    uint32_t events;        // sent so far
+    double last_difference; // of an adjustment
+    int32_t direction;
+    uint32_t events; // sent so far
 };
 
 void observer_start(struct observer *observer, const struct observer_parameters *parameters, uint64_t seed,

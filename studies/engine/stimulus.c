@@ -1,19 +1,11 @@
 // What one attempt of a trial shows: fades by time, exposures, which options were seen.
 #include "studies/engine/machine_state.h"
 
-static const struct plan_trial *running(const struct machine *machine)
-{
-    return &machine->plan->trials[machine->trial];
-}
-
 void stimulus_begin(struct machine *machine)
 {
-    machine->stimulus = (struct stimulus){.starting = true,
-                                          .full_ns = -1,
-                                          .slot = running(machine)->first_shown,
-                                          .target = running(machine)->first_shown,
-                                          .fade = FADE_IN,
-                                          .level = 1};
+    enum plan_slot first = machine_running(machine)->first_shown;
+    machine->stimulus = (struct stimulus){
+        .starting = true, .full_ns = -1, .slot = first, .target = first, .fade = FADE_IN, .level = 1};
     machine->attempts[machine->trial]++;
 }
 
@@ -49,6 +41,10 @@ static void note_exposure(struct machine *machine, int64_t now_ns)
         return;
     if (s->exposure.full_start_ns < 0)
         s->exposure.full_start_ns = now_ns;
+    // A full frame stays until the next one of the same option; one after a fade or a pause counts from itself
+    // on.
+    if (s->exposure.full_end_ns >= 0 && s->exposure.full_end_ns == s->last_frame_ns)
+        s->seen_ns[s->slot] += now_ns - s->last_frame_ns;
     s->exposure.full_end_ns = now_ns;
     s->last_full_ns = now_ns;
     s->seen[s->slot] = true;
@@ -89,10 +85,39 @@ static void fade_switch(struct stimulus *s, const struct protocol_settings *sett
         s->fade = FADE_NONE;
 }
 
+// Of a sequential trial: out of the image when its time is over, the gap, the second image, the end.
+static void fade_sequence(struct machine *machine, const struct protocol_settings *settings, int64_t now_ns)
+{
+    struct stimulus *s = &machine->stimulus;
+    if (s->fade == FADE_NONE && stimulus_reaction(machine, now_ns) >= settings->view_ns) {
+        s->fade = FADE_OUT;
+        s->fade_ns = s->full_ns + s->paused_full_ns + settings->view_ns;
+    }
+    if (s->fade == FADE_OUT) {
+        s->level = part(now_ns - s->fade_ns, settings->fade_to_gray_ns);
+        if (s->level < 1)
+            return;
+        stimulus_close_exposure(machine);
+        s->fade = FADE_GAP;
+        s->fade_ns += settings->fade_to_gray_ns;
+        s->shown = s->showing == 1;
+    }
+    if (s->fade == FADE_GAP && !s->shown && now_ns - s->fade_ns >= settings->gap_ns) {
+        s->showing = 1;
+        s->slot = s->target = (enum plan_slot)(1 - (int)s->slot);
+        s->fade = FADE_IN;
+        s->start_ns = s->fade_ns = now_ns;
+        s->paused_ns = s->paused_full_ns = 0;
+        s->full_ns = -1;
+        s->began_now = true;
+    }
+}
+
 void stimulus_frame(struct machine *machine, int64_t now_ns)
 {
     struct stimulus *s = &machine->stimulus;
-    const struct protocol_settings *settings = running(machine)->resolved;
+    const struct plan_trial *trial = machine_running(machine);
+    const struct protocol_settings *settings = trial->resolved;
     s->began_now = s->starting;
     if (s->starting) {
         s->starting = false;
@@ -105,8 +130,11 @@ void stimulus_frame(struct machine *machine, int64_t now_ns)
         fade_in(s, settings, now_ns);
     else if (s->fade == FADE_SWITCH)
         fade_switch(s, settings, now_ns);
+    if (trial->kind == PROTOCOL_SEQUENTIAL && s->full_ns >= 0)
+        fade_sequence(machine, settings, now_ns);
     s->camera_ns = now_ns - s->start_ns - s->paused_ns;
     note_exposure(machine, now_ns);
+    s->last_frame_ns = now_ns;
 }
 
 void stimulus_toggle(struct machine *machine, int64_t now_ns)
@@ -134,6 +162,10 @@ void stimulus_resume(struct machine *machine, int64_t paused_ns)
     s->paused_ns += paused_ns;
     if (s->full_ns >= 0)
         s->paused_full_ns += paused_ns;
+    if (s->fade == FADE_OUT || s->fade == FADE_GAP) { // nothing more of this showing is to come
+        s->fade_ns += paused_ns;
+        return;
+    }
     s->slot = s->target;
     s->fade = FADE_IN;
     s->fade_ns = STIMULUS_NOT_YET;
@@ -143,4 +175,21 @@ void stimulus_resume(struct machine *machine, int64_t paused_ns)
 int64_t stimulus_reaction(const struct machine *machine, int64_t now_ns)
 {
     return now_ns - machine->stimulus.full_ns - machine->stimulus.paused_full_ns;
+}
+
+bool stimulus_seen(const struct machine *machine)
+{
+    const struct stimulus *s = &machine->stimulus;
+    int64_t least = machine_running(machine)->resolved->min_exposure_ns;
+    return s->seen[0] && s->seen[1] && s->seen_ns[0] >= least && s->seen_ns[1] >= least;
+}
+
+bool stimulus_timed_out(const struct machine *machine, int64_t now_ns)
+{
+    const struct plan_trial *trial = machine_running(machine);
+    int64_t view_ns = trial->resolved->view_ns;
+    if (trial->kind == PROTOCOL_SEQUENTIAL)
+        return machine->stimulus.shown;
+    return !protocol_kind_is_pair(trial->kind) && view_ns > 0 && machine->stimulus.full_ns >= 0 &&
+           stimulus_reaction(machine, now_ns) >= view_ns;
 }

@@ -1,11 +1,13 @@
 // What is on screen, from the state alone; and the words that the store and event lines use.
 #include "studies/engine/machine_state.h"
 
+#include <math.h>
+
 const char *machine_screen_name(enum machine_screen screen)
 {
     static const char *const names[] = {"consent",  "instructions", "ready",        "stimulus",
                                         "question", "storing",      "confirmation", "rest",
-                                        "paused",   "abort",        "end"};
+                                        "break",    "paused",       "abort",        "end"};
     return names[screen];
 }
 
@@ -18,9 +20,11 @@ const char *machine_phase_name(enum machine_phase phase)
 const char *machine_record_name(enum machine_record_kind kind)
 {
     static const char *const names[] = {"consent_given", "consent_refused", "trial_started",  "trial_done",
-                                        "exposure",      "toggle",          "toggle_ignored", "choice_early",
-                                        "choice",        "rating",          "pause_began",    "pause_ended",
-                                        "abort_asked",   "abort_declined",  "clock_back",     "ended"};
+                                        "trial_invalid", "trial_repeated",  "trial_skipped",  "exposure",
+                                        "toggle",        "toggle_ignored",  "choice_early",   "adjusted",
+                                        "choice",        "rating",          "responses",      "pause_began",
+                                        "pause_ended",   "abort_asked",     "abort_declined", "clock_back",
+                                        "ended"};
     return names[kind];
 }
 
@@ -30,7 +34,7 @@ static enum machine_screen top_screen(const struct machine *machine)
 }
 
 static const char *screen_text(const struct machine *machine, enum machine_screen screen,
-                               const struct plan_trial *trial)
+                               const struct protocol_question *question)
 {
     switch (screen) {
     case MACHINE_CONSENT:
@@ -38,46 +42,83 @@ static const char *screen_text(const struct machine *machine, enum machine_scree
     case MACHINE_INSTRUCTIONS:
         return machine->text;
     case MACHINE_QUESTION:
-        return trial->question->text;
+        return question ? question->text : NULL;
     default:
         return NULL;
     }
 }
 
+// Whether START ends the stimulus: where nothing else does, and all was seen.
+static bool leads_on(const struct machine *machine, const struct plan_trial *trial,
+                     const struct protocol_question *question)
+{
+    if (!protocol_kind_is_pair(trial->kind))
+        return trial->resolved->view_ns == 0 && machine->stimulus.full_ns >= 0;
+    return trial->kind != PROTOCOL_SEQUENTIAL && !question && stimulus_seen(machine);
+}
+
+static void look_at_stimulus(const struct machine *machine, const struct plan_trial *trial,
+                             struct machine_view *out)
+{
+    const struct stimulus *s = &machine->stimulus;
+    struct machine_ask ask = {0};
+    bool gap = s->fade == FADE_GAP;
+    out->phase = s->level > 0 ? MACHINE_PHASE_FADE : MACHINE_PHASE_STIMULUS;
+    out->slot = gap ? PLAN_SLOT_NONE : s->slot;
+    out->condition = gap ? -1 : trial->option[s->slot];
+    out->fade = s->level;
+    out->marker = gap;
+    out->showing = s->showing;
+    out->trial_started = s->began_now;
+    out->may_choose = stimulus_seen(machine);
+    out->stimulus_ns = s->camera_ns;
+    out->level = machine->level;
+    out->adjusted = trial->kind == PROTOCOL_ADJUST ? machine->adjusted : NULL;
+    out->adjusting = machine->adjusting;
+    // A choice between two that can be switched is made while looking at them.
+    bool chooses = trial->kind == PROTOCOL_TOGGLE || trial->kind == PROTOCOL_STAIRCASE;
+    if (chooses && machine->answers[machine->trial] == 0 && machine_ask(machine->plan, trial, 0, &ask) &&
+        ask.question->type == PROTOCOL_ASK_CHOICE)
+        out->question = ask.question;
+    out->may_go_on = leads_on(machine, trial, out->question);
+}
+
 void machine_look(const struct machine *machine, struct machine_view *out_view)
 {
     enum machine_screen screen = top_screen(machine);
-    uint32_t next = machine->shown_block == UINT32_MAX ? machine_next_trial(machine) : machine->trial;
-    const struct plan_trial *trial = next < machine->plan->trial_count ? &machine->plan->trials[next] : NULL;
+    uint32_t places = course_places(machine);
+    uint32_t next = machine->shown_block == UINT32_MAX ? course_next(machine) : machine->trial;
+    const struct plan_trial *trial = next < places ? machine_trial(machine, next) : NULL;
     *out_view = (struct machine_view){.screen = screen,
                                       .phase = MACHINE_PHASE_REST,
                                       .trial = trial,
                                       .trial_index = next,
                                       .slot = PLAN_SLOT_NONE,
+                                      .subject = PLAN_SLOT_NONE,
                                       .condition = -1,
                                       .fade = 1,
-                                      .text = screen_text(machine, screen, trial),
+                                      .level = NAN,
                                       .last_value = machine->last_value,
-                                      .total = machine->plan->trial_count,
+                                      .total = places,
                                       .complete = machine->complete};
-    for (uint32_t i = 0; i < out_view->total; i++)
+    for (uint32_t i = 0; i < places; i++)
         out_view->done += machine->done[i];
     if (trial)
         out_view->attempt = machine->attempts[next];
-    const struct stimulus *s = &machine->stimulus;
-    if (screen == MACHINE_STIMULUS && !s->starting && trial) {
-        out_view->phase = s->level > 0 ? MACHINE_PHASE_FADE : MACHINE_PHASE_STIMULUS;
-        out_view->slot = s->slot;
-        out_view->condition = trial->option[s->slot];
-        out_view->fade = s->level;
-        out_view->trial_started = s->began_now;
-        out_view->may_choose = s->seen[0] && s->seen[1];
-        out_view->stimulus_ns = s->camera_ns;
-        out_view->question = trial->kind == PROTOCOL_TOGGLE ? trial->question : NULL;
+    if (screen == MACHINE_STIMULUS && !machine->stimulus.starting && trial) {
+        look_at_stimulus(machine, trial, out_view);
     } else if (screen == MACHINE_QUESTION || screen == MACHINE_STORING || screen == MACHINE_CONFIRMATION) {
+        struct machine_ask ask = {0};
         out_view->phase = MACHINE_PHASE_QUESTION;
-        out_view->question = screen == MACHINE_QUESTION && trial ? trial->question : NULL;
-    } else if (screen == MACHINE_REST && trial) {
+        if (screen == MACHINE_QUESTION && trial &&
+            machine_ask(machine->plan, trial, machine->answers[next], &ask)) {
+            out_view->question = ask.question;
+            out_view->subject = ask.subject;
+        }
+    } else if ((screen == MACHINE_REST || screen == MACHINE_BREAK) && trial) {
+        int64_t left = machine_rest_ns(machine) - (machine->now_ns - machine->since_ns);
         out_view->may_choose = machine_may_go_on(machine);
+        out_view->wait_ns = left > 0 ? left : 0;
     }
+    out_view->text = screen_text(machine, screen, out_view->question);
 }

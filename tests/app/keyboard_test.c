@@ -13,15 +13,26 @@
 #include <cmocka.h>
 
 static const struct plan_trial toggle_trial = {.kind = PROTOCOL_TOGGLE}, rate_trial = {.kind = PROTOCOL_RATE};
-static const struct protocol_question ten = {.scale_min = 1, .scale_max = 10};
-static const struct protocol_question seven = {.scale_min = -3, .scale_max = 3};
+static const struct plan_trial adjust_trial = {.kind = PROTOCOL_ADJUST},
+                               pair_trial = {.kind = PROTOCOL_SEQUENTIAL};
+static const struct protocol_question prefer = {.type = PROTOCOL_ASK_CHOICE};
+static const struct protocol_question compare = {.type = PROTOCOL_ASK_CHOICE, .equal = true};
+static const struct protocol_question ten = {.type = PROTOCOL_ASK_RATING, .scale_min = 1, .scale_max = 10};
+static const struct protocol_question seven = {.type = PROTOCOL_ASK_RATING, .scale_min = -3, .scale_max = 3};
 
 // What one key gives on a screen, with a keyboard of its own.
 static void expect(enum machine_screen screen, const struct plan_trial *trial, int key, bool last_page,
                    enum keyboard_meaning meaning, enum machine_event_kind kind, int32_t value)
 {
     struct keyboard keyboard = {0};
-    struct machine_view view = {.screen = screen, .trial = trial, .question = &ten};
+    static const double adjusted[PROTOCOL_ADJUSTED];
+    struct machine_view view = {.screen = screen, .trial = trial};
+    view.may_go_on = trial == &rate_trial || trial == &adjust_trial;
+    view.adjusted = trial == &adjust_trial ? adjusted : NULL;
+    view.question = trial == &pair_trial         ? &compare
+                    : screen == MACHINE_QUESTION ? &ten
+                    : trial == &toggle_trial     ? &prefer
+                                                 : NULL;
     struct machine_event event = {.kind = MACHINE_ANSWER_STORED, .value = -99};
     assert_int_equal(keyboard_press(&keyboard, &view, last_page, key, &event), meaning);
     if (meaning == KEYBOARD_EVENT) {
@@ -43,6 +54,24 @@ static void stimulus_keys(void **state)
     expect(MACHINE_STIMULUS, &rate_trial, GLFW_KEY_ENTER, true, KEYBOARD_EVENT, MACHINE_START, 0);
     expect(MACHINE_STIMULUS, &rate_trial, GLFW_KEY_SPACE, true, KEYBOARD_NOTHING, 0, 0);
     expect(MACHINE_STIMULUS, &rate_trial, GLFW_KEY_1, true, KEYBOARD_NOTHING, 0, 0);
+}
+
+static void keys_of_other_trials(void **state)
+{
+    (void)state;
+    expect(MACHINE_STIMULUS, &adjust_trial, GLFW_KEY_SPACE, true, KEYBOARD_EVENT, MACHINE_TOGGLE_KEY, 0);
+    expect(MACHINE_STIMULUS, &adjust_trial, GLFW_KEY_UP, true, KEYBOARD_EVENT, MACHINE_ADJUST, 1);
+    expect(MACHINE_STIMULUS, &adjust_trial, GLFW_KEY_DOWN, true, KEYBOARD_EVENT, MACHINE_ADJUST, -1);
+    expect(MACHINE_STIMULUS, &adjust_trial, GLFW_KEY_TAB, true, KEYBOARD_EVENT, MACHINE_ADJUST_NEXT, 1);
+    expect(MACHINE_STIMULUS, &adjust_trial, GLFW_KEY_ENTER, true, KEYBOARD_EVENT, MACHINE_START, 0);
+    expect(MACHINE_STIMULUS, &adjust_trial, GLFW_KEY_1, true, KEYBOARD_NOTHING, 0, 0);
+    expect(MACHINE_QUESTION, &pair_trial, GLFW_KEY_LEFT, true, KEYBOARD_EVENT, MACHINE_CHOOSE, PLAN_SLOT_A);
+    expect(MACHINE_QUESTION, &pair_trial, GLFW_KEY_DOWN, true, KEYBOARD_EVENT, MACHINE_CHOOSE, PLAN_SLOT_NONE);
+    expect(MACHINE_QUESTION, &pair_trial, GLFW_KEY_2, true, KEYBOARD_EVENT, MACHINE_CHOOSE, PLAN_SLOT_B);
+    expect(MACHINE_QUESTION, &toggle_trial, GLFW_KEY_E, true, KEYBOARD_NOTHING, 0, 0);
+    expect(MACHINE_BREAK, &toggle_trial, GLFW_KEY_ENTER, true, KEYBOARD_EVENT, MACHINE_START, 0);
+    expect(MACHINE_STIMULUS, &toggle_trial, GLFW_KEY_F12, true, KEYBOARD_EVENT, MACHINE_FLAG, 0);
+    expect(MACHINE_CONSENT, &toggle_trial, GLFW_KEY_F12, true, KEYBOARD_NOTHING, 0, 0);
 }
 
 static void pause_and_abort_keys(void **state)
@@ -133,6 +162,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(stimulus_keys),
+        cmocka_unit_test(keys_of_other_trials),
         cmocka_unit_test(pause_and_abort_keys),
         cmocka_unit_test(reading_keys),
         cmocka_unit_test(ratings_are_marked_then_confirmed),

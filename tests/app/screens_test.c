@@ -12,7 +12,8 @@
 
 static const struct protocol_settings settings = {.advance = PROTOCOL_ADVANCE_KEY};
 static const struct protocol_question prefer = {.text = (char[]){"Which one do you prefer?"}};
-static const struct protocol_question quality = {.text = (char[]){"How good?"},
+static const struct protocol_question quality = {.type = PROTOCOL_ASK_RATING,
+                                                 .text = (char[]){"How good?"},
                                                  .scale_min = 1,
                                                  .scale_max = 10,
                                                  .label_min = (char[]){"bad"},
