@@ -240,10 +240,15 @@ bool quest_plus_check(const struct quest_plus_desc *desc, char *error, size_t er
                     desc->level.min, desc->model.threshold.min,
                     desc->model.family->logarithmic ? desc->model.family->name : "logarithmic levels");
     double bytes = quest_plus_doubles(desc) * sizeof(double);
+    if (!(bytes < 1e15)) // the count of sets is no longer exact
+        return fail(error, error_size,
+                    "the grids make more parameter sets than can be counted; at most %.0f MiB of tables, so "
+                    "make them coarser",
+                    QUEST_PLUS_BYTES / 1048576);
     if (!(bytes <= QUEST_PLUS_BYTES))
         return fail(
             error, error_size,
-            "the grids make %g parameter sets and tables of %.0f MiB; at most %.0f MiB, so make them coarser",
+            "the grids make %.0f parameter sets and tables of %.0f MiB; at most %.0f MiB, so make them coarser",
             quest_plus_sets(&desc->model), bytes / 1048576, QUEST_PLUS_BYTES / 1048576);
     return true;
 }

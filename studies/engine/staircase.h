@@ -21,7 +21,10 @@
 // of the levels shown. A step that the bound swallows whole is no move. The estimate is the mean (geometric on
 // logarithmic levels) of the levels of the last even number of reversals among those made with the last step
 // size, that is after the first step_count - 1; NaN before there are two. To leave out more, repeat the last
-// step size in the list.
+// step size in the list. It is off where the psychometric function bends within a step: keep the last steps,
+// the wrong answer's too, below the function's spread (figures:
+// tests/studies/engine/test_staircase_observer.c). Levels are reached by adding steps (multiplying factors), so
+// what is the same level on paper may differ in its last digits.
 #ifndef STUDIES_ENGINE_STAIRCASE_H
 #define STUDIES_ENGINE_STAIRCASE_H
 
