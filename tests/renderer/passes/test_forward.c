@@ -84,13 +84,14 @@ static void forward_shades_what_deferred_does(void **state)
     (void)state;
     static uint8_t regular[PIXELS][4], forward[PIXELS][4];
     static const char *const scenes[] = {"atrium", "town:triangles=60000"};
+    const double plain[MODE_PARAMETERS] = {0};          // eyes=separate
     const double values[MODE_PARAMETERS] = {10, 20, 1}; // path=hardware
     for (size_t k = 0; k < countof(scenes); k++) {
         struct bed b;
         bed_open(&b, scenes[k]);
         b.rig.gpu->shading_rate.texel = 0; // a device that has it too
         for (int ssao = 0; ssao < 2; ssao++) {
-            draw(&b, &mode_regular, NULL, ssao, 7, regular);
+            draw(&b, &mode_regular, plain, ssao, 7, regular);
             const uint32_t shaded = draw(&b, &mode_vrs, values, ssao, 7, forward);
             // nothing missed, and nothing hidden but where two surfaces have one depth
             assert_in_range(shaded, PIXELS, PIXELS + PIXELS / 1000);
