@@ -84,14 +84,13 @@ static int add_mode(struct request *r, const char *text)
     struct request_mode mode = {.text = text};
     if (!mode_parse(text, &mode.choice, error, sizeof error))
         return options_wrong("fovbench", "%s", error);
-    if (strcmp(mode.choice.mode->name, "regular") == 0)
-        return -1; // it is there
-    if (r->mode_count == REQUEST_MODES)
-        return too_many(MODES, REQUEST_MODES - 1);
     for (size_t i = 0; i < r->mode_count; i++)
         if (r->modes[i].choice.mode == mode.choice.mode &&
             memcmp(r->modes[i].choice.values, mode.choice.values, sizeof mode.choice.values) == 0)
-            return options_wrong("fovbench", "mode '%s' is there twice", text);
+            // the first is the reference, which is there without being named
+            return i == 0 ? -1 : options_wrong("fovbench", "mode '%s' is there twice", text);
+    if (r->mode_count == REQUEST_MODES)
+        return too_many(MODES, REQUEST_MODES - 1);
     r->modes[r->mode_count++] = mode;
     return -1;
 }

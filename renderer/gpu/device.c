@@ -274,13 +274,19 @@ static bool create_device(struct gpu *gpu)
         .fragmentStoresAndAtomics = has.core.features.fragmentStoresAndAtomics,
     };
     use.v11.shaderDrawParameters = VK_TRUE;
+    use.v11.multiview = has.v11.multiview;
     use.v12.drawIndirectCount = VK_TRUE;
+    use.v12.shaderOutputLayer = has.v12.shaderOutputLayer;
     use.v12.scalarBlockLayout = VK_TRUE;
     use.v12.hostQueryReset = VK_TRUE;
     use.v12.shaderBufferInt64Atomics = has.v12.shaderBufferInt64Atomics;
     use.v13.dynamicRendering = VK_TRUE;
     use.v13.synchronization2 = VK_TRUE;
     use.v13.maintenance4 = VK_TRUE;
+    // Mesa's software driver puts triangles that it clips for the second view into the first view's layer: it
+    // collects clipped triangles beyond the change of the view (its draw_pipe_vbuf.c; seen in 22.3.6).
+    gpu->multiview = has.v11.multiview && gpu->driver.driverID != VK_DRIVER_ID_MESA_LLVMPIPE;
+    gpu->output_layer = has.v12.shaderOutputLayer;
     gpu->int64_atomics = has.core.features.shaderInt64 && has.v12.shaderBufferInt64Atomics;
     VkPhysicalDeviceFragmentShadingRateFeaturesKHR rate = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FRAGMENT_SHADING_RATE_FEATURES_KHR,

@@ -48,6 +48,8 @@ struct gpu {
     VkPhysicalDeviceDriverProperties driver;
     VkPhysicalDeviceMemoryProperties memory;
     bool int64_atomics; // 64-bit atomics on storage buffers
+    bool multiview;     // one draw goes to several layers, and rightly
+    bool output_layer;  // a vertex shader chooses the layer
     struct gpu_shading_rate shading_rate;
     float anisotropy; // of textures, 1: none
     VkDevice device;
@@ -202,6 +204,7 @@ struct gpu_raster_desc {
     uint32_t colour_count;
     VkFormat depth_format; // 0: none
     VkCompareOp depth_compare;
+    uint32_t view_mask;       // layers that every draw goes to, gl_ViewIndex by gl_ViewIndex; 0: no multiview
     bool keep_depth;          // tested, not written
     bool shading_rate;        // drawn with a map of rates attached, which decides alone
     float slope_bias;         // depth added per depth slope a pixel; 0: none

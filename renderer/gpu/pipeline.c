@@ -181,6 +181,7 @@ VkPipeline gpu_raster_create(struct gpu *gpu, const struct gpu_raster_desc *desc
     const VkDynamicState dynamic[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR,
                                       VK_DYNAMIC_STATE_CULL_MODE, VK_DYNAMIC_STATE_FRONT_FACE};
     const VkPipelineRenderingCreateInfo rendering = {.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
+                                                     .viewMask = desc->view_mask,
                                                      .colorAttachmentCount = desc->colour_count,
                                                      .pColorAttachmentFormats = desc->colour_formats,
                                                      .depthAttachmentFormat = desc->depth_format};

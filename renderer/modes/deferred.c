@@ -8,7 +8,12 @@ static VkImageView view_of(const struct gpu_image *image)
 static bool init_geometry(struct deferred *d, const struct deferred_desc *desc)
 {
     const struct mode_setup *s = desc->setup;
-    struct cull_desc cull = {.gpu = s->gpu, .scene = s->scene, .frame = s->frame, .counters = s->counters};
+    struct cull_desc cull = {.gpu = s->gpu,
+                             .scene = s->scene,
+                             .frame = s->frame,
+                             .counters = s->counters,
+                             .both_eyes = desc->eyes != GBUFFER_EYE_BY_EYE,
+                             .instanced = desc->eyes == GBUFFER_INSTANCED};
     if (d->has_map) {
         cull.pyramid = &desc->redraw->pyramid;
         cull.tiles_x = desc->redraw->tiles_x;
@@ -21,6 +26,7 @@ static bool init_geometry(struct deferred *d, const struct deferred_desc *desc)
                                    .width = s->width,
                                    .height = s->height,
                                    .depth_only = desc->depth_only,
+                                   .eyes = desc->eyes,
                                    .ids = s->scene->scene->moving_count &&
                                           (desc->ids || d->has_taa || d->has_motion),
                                    .redraw_map = view_of(desc->redraw_map)};
@@ -138,8 +144,9 @@ void deferred_finish(struct deferred *d)
 void deferred_explain(const struct deferred *d, const struct mode_setup *setup)
 {
     struct mode_explanation *e = setup->explanation;
-    mode_explain(e, cull_memory(&d->cull), "indirect draws of %u submodels for two eyes",
-                 setup->scene->item_count);
+    mode_explain(e, cull_memory(&d->cull), "indirect draws of %u submodels, %s", setup->scene->item_count,
+                 d->gbuffer.eyes == GBUFFER_EYE_BY_EYE ? "a list for each eye"
+                                                       : "one list for both eyes, which are drawn in one pass");
     mode_explain(e, gbuffer_memory(&d->gbuffer), "%s, %u pipelines%s%s",
                  d->gbuffer.depth_only ? "depth" : "G-buffer", d->gbuffer.pipeline_count,
                  d->gbuffer.has_emissive ? ", emissive because the scene glows"

@@ -30,6 +30,7 @@ struct deferred {
 struct deferred_desc {
     const struct mode_setup *setup;
     const struct gpu_image *colour[2]; // rgba8, tone-mapped into; the second may be NULL
+    enum gbuffer_eyes eyes;            // with a redraw map eye by eye
     bool ids;                          // the mode needs moving ids in the G-buffer
     const struct shade_blocks *blocks; // for shade_desc; NULL: every pixel by itself
     bool depth_only;                   // no G-buffer but depth, and ids; with own_shade

@@ -45,6 +45,7 @@ static void wrong_usage_is_exit_2(void **state)
         {"--modes flying", "'flying'"},
         {"--modes time_warped:epsilon=2", "epsilon"},
         {"--modes time_warped time_warped:epsilon=0.2", "twice"},
+        {"--modes regular:eyes=instanced regular:eyes=instanced", "twice"},
         {"--size 640", "'640'"},
         {"--sizes 64x72 8x8", "'8x8'"},
         {"--gaze up", "'up'"},

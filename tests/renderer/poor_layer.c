@@ -45,6 +45,10 @@ static VKAPI_ATTR void VKAPI_CALL get_features(VkPhysicalDevice device, VkPhysic
     for (VkBaseOutStructure *s = out->pNext; s; s = s->pNext) {
         if (s->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES && lacks("drawIndirectCount"))
             ((VkPhysicalDeviceVulkan12Features *)s)->drawIndirectCount = VK_FALSE;
+        if (s->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES && lacks("shaderOutputLayer"))
+            ((VkPhysicalDeviceVulkan12Features *)s)->shaderOutputLayer = VK_FALSE;
+        if (s->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES && lacks("multiview"))
+            ((VkPhysicalDeviceVulkan11Features *)s)->multiview = VK_FALSE;
     }
 }
 

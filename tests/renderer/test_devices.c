@@ -75,12 +75,11 @@ static void a_device_without_what_every_mode_needs(void **state)
 }
 
 // A mode that needs more than the others refuses, and the others go on.
-static void a_device_without_64_bit_atomics(void **state)
+static void refuses_alone(const char *feature, const char *mode, const char *about)
 {
-    (void)state;
     struct heard heard = {0};
     char error[512];
-    use_poor_layer("shaderInt64");
+    use_poor_layer(feature);
     struct renderer *r =
         renderer_create(&(struct renderer_desc){.log = {hear, &heard}, .width = 64, .height = 64});
     use_no_layer();
@@ -88,10 +87,11 @@ static void a_device_without_64_bit_atomics(void **state)
     struct scene *scene = scene_open("town:triangles=20000", error, sizeof error);
     struct renderer_scene *uploaded = renderer_scene_create(r, scene);
     struct mode_choice choice;
-    assert_true(mode_parse("time_warped", &choice, error, sizeof error));
+    assert_true(mode_parse(mode, &choice, error, sizeof error));
     assert_null(renderer_option_create(r, uploaded, &choice, NULL));
     assert_int_equal(heard.sentences, 1);
-    assert_non_null(strstr(heard.last, "time_warped needs 64-bit atomics"));
+    if (!strstr(heard.last, about))
+        fail_msg("'%s' does not say '%s'", heard.last, about);
     assert_true(mode_parse("regular", &choice, error, sizeof error));
     struct renderer_option *regular = renderer_option_create(r, uploaded, &choice, NULL);
     assert_non_null(regular);
@@ -99,6 +99,19 @@ static void a_device_without_64_bit_atomics(void **state)
     renderer_scene_destroy(uploaded);
     renderer_destroy(r);
     scene_destroy(scene);
+}
+
+static void a_device_without_64_bit_atomics(void **state)
+{
+    (void)state;
+    refuses_alone("shaderInt64", "time_warped", "time_warped needs 64-bit atomics");
+}
+
+static void a_device_that_cannot_draw_both_eyes_at_once(void **state)
+{
+    (void)state;
+    refuses_alone("multiview", "regular:eyes=multiview", "eyes=multiview needs multiview");
+    refuses_alone("shaderOutputLayer", "regular:eyes=instanced", "eyes=instanced needs shaderOutputLayer");
 }
 
 static void no_driver_at_all(void **state)
@@ -122,6 +135,7 @@ int main(void)
         cmocka_unit_test(sizes_out_of_range),
         cmocka_unit_test(a_device_without_what_every_mode_needs),
         cmocka_unit_test(a_device_without_64_bit_atomics),
+        cmocka_unit_test(a_device_that_cannot_draw_both_eyes_at_once),
         cmocka_unit_test(no_driver_at_all),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -5,7 +5,21 @@
 
 #include "renderer/modes/deferred.h"
 
+#include <stdio.h>
 #include <stdlib.h>
+
+enum { EYES_DRAWN };
+
+static const char *const eyes_drawn[] = {[GBUFFER_EYE_BY_EYE] = "separate",
+                                         [GBUFFER_MULTIVIEW] = "multiview",
+                                         [GBUFFER_INSTANCED] = "instanced",
+                                         NULL};
+
+static const struct mode_parameter parameters[] = {
+    [EYES_DRAWN] = {"eyes", "",
+                    "surfaces drawn eye after eye, or in one pass for both, by multiview or by two instances",
+                    0, 2, GBUFFER_EYE_BY_EYE, eyes_drawn},
+};
 
 struct mode_state {
     struct gpu *gpu;
@@ -13,6 +27,19 @@ struct mode_state {
     struct gpu_image colour;
     bool in_use;
 };
+
+static bool supported(const struct gpu *gpu, const double *values, char *why, size_t why_size)
+{
+    const enum gbuffer_eyes eyes = (enum gbuffer_eyes)values[EYES_DRAWN];
+    const char *lack = eyes == GBUFFER_MULTIVIEW && !gpu->multiview      ? "multiview"
+                       : eyes == GBUFFER_INSTANCED && !gpu->output_layer ? "shaderOutputLayer"
+                                                                         : NULL;
+    if (lack)
+        snprintf(why, why_size,
+                 "regular with eyes=%s needs %s, which %s lacks or gets wrong; eyes=separate runs anywhere",
+                 eyes_drawn[eyes], lack, gpu->properties.deviceName);
+    return !lack;
+}
 
 static void destroy(struct mode_state *state)
 {
@@ -37,7 +64,8 @@ static struct mode_state *create(const struct mode_setup *setup)
                                           .array = true,
                                           .usage =
                                               VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT};
-    const struct deferred_desc deferred = {.setup = setup, .colour = {&s->colour}};
+    const struct deferred_desc deferred = {
+        .setup = setup, .colour = {&s->colour}, .eyes = (enum gbuffer_eyes)setup->values[EYES_DRAWN]};
     if (!gpu_image_create(s->gpu, &colour, &s->colour) || !deferred_init(&s->deferred, &deferred)) {
         destroy(s);
         return NULL;
@@ -64,6 +92,9 @@ const struct mode mode_regular = {
     .name = "regular",
     .description = "deferred, full resolution, every pixel: the reference",
     .source = "Franke et al. 2021, section 8.4 (the regular renderer)",
+    .parameters = parameters,
+    .parameter_count = countof(parameters),
+    .supported = supported,
     .create = create,
     .record = record,
     .destroy = destroy,

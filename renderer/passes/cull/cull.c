@@ -37,15 +37,16 @@ static const struct gpu_binding emit_bindings[] = {
 static bool create_buffers(struct cull *c)
 {
     const struct scene_gpu *s = c->scene;
+    const uint64_t lists = c->lists;
     const VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
     const VkBufferUsageFlags indirect = storage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
-    return gpu_buffer_create(c->gpu, "visible items", 2ull * s->item_count * sizeof(uint32_t), storage,
+    return gpu_buffer_create(c->gpu, "visible items", lists * s->item_count * sizeof(uint32_t), storage,
                              GPU_DEVICE, &c->visible) &&
-           gpu_buffer_create(c->gpu, "group counts", 2ull * s->group_count * sizeof(uint32_t), storage,
+           gpu_buffer_create(c->gpu, "group counts", lists * s->group_count * sizeof(uint32_t), storage,
                              GPU_DEVICE, &c->group_counts) &&
-           gpu_buffer_create(c->gpu, "draws", 2ull * s->item_count * sizeof(struct shared_draw), indirect,
+           gpu_buffer_create(c->gpu, "draws", lists * s->item_count * sizeof(struct shared_draw), indirect,
                              GPU_DEVICE, &c->draws) &&
-           gpu_buffer_create(c->gpu, "draw counts", 2ull * s->bucket_count * sizeof(uint32_t), indirect,
+           gpu_buffer_create(c->gpu, "draw counts", lists * s->bucket_count * sizeof(uint32_t), indirect,
                              GPU_DEVICE, &c->draw_counts);
 }
 
@@ -54,13 +55,16 @@ static bool create_count(struct cull *c, const struct cull_desc *desc)
     struct gpu_binding bindings[COUNT_BINDINGS];
     memcpy(bindings, count_bindings, sizeof bindings);
     bindings[COUNTERS].absent = bindings[PYRAMID].absent = !c->by_redraw_map;
+    const int32_t both_eyes = c->lists == 1;
     const struct gpu_kernel_desc count = {
         .name = "cull count",
         .code = c->by_redraw_map ? (struct gpu_code){cull_count_comp_redraw, sizeof cull_count_comp_redraw}
                                  : (struct gpu_code){cull_count_comp, sizeof cull_count_comp},
         .bindings = bindings,
         .binding_count = countof(bindings),
-        .push_bytes = c->by_redraw_map ? sizeof(struct count_push) : 0};
+        .push_bytes = c->by_redraw_map ? sizeof(struct count_push) : 0,
+        .constants = &both_eyes,
+        .constant_count = 1};
     const struct gpu_resource resources[] = {
         {.buffer = desc->frame},       {.buffer = &c->scene->items}, {.buffer = &c->scene->objects},
         {.buffer = &c->scene->groups}, {.buffer = &c->visible},      {.buffer = &c->group_counts},
@@ -74,13 +78,13 @@ static bool create_count(struct cull *c, const struct cull_desc *desc)
 
 static bool create_emit(struct cull *c, const struct cull_desc *desc)
 {
-    const int32_t buckets = (int32_t)c->scene->bucket_count;
+    const int32_t constants[] = {(int32_t)c->scene->bucket_count, c->lists == 1, desc->instanced ? 2 : 1};
     const struct gpu_kernel_desc emit = {.name = "cull emit",
                                          .code = {cull_emit_comp, sizeof cull_emit_comp},
                                          .bindings = emit_bindings,
                                          .binding_count = countof(emit_bindings),
-                                         .constants = &buckets,
-                                         .constant_count = 1};
+                                         .constants = constants,
+                                         .constant_count = countof(constants)};
     const struct gpu_resource resources[] = {
         {.buffer = desc->frame},     {.buffer = &c->scene->items}, {.buffer = &c->scene->groups},
         {.buffer = &c->visible},     {.buffer = &c->group_counts}, {.buffer = &c->draws},
@@ -96,6 +100,7 @@ bool cull_init(struct cull *c, const struct cull_desc *desc)
 {
     *c = (struct cull){.gpu = desc->gpu,
                        .scene = desc->scene,
+                       .lists = desc->both_eyes ? 1 : 2,
                        .by_redraw_map = desc->pyramid != NULL,
                        .tiles_x = desc->tiles_x,
                        .tiles_y = desc->tiles_y,
@@ -129,8 +134,8 @@ void cull_record(const struct cull *c, VkCommandBuffer cmd, bool moving_everywhe
     const struct count_push push = {c->tiles_x, c->tiles_y, c->levels, moving_everywhere};
     gpu_barrier(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, compute);
     gpu_dispatch(cmd, &c->count, c->count_set, &push, c->by_redraw_map ? sizeof push : 0, c->scene->group_count,
-                 2, 1);
+                 c->lists, 1);
     gpu_barrier(cmd, compute, compute);
-    gpu_dispatch(cmd, &c->emit, c->emit_set, NULL, 0, c->scene->group_count, 2, 1);
+    gpu_dispatch(cmd, &c->emit, c->emit_set, NULL, 0, c->scene->group_count, c->lists, 1);
     gpu_barrier(cmd, compute, VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT);
 }

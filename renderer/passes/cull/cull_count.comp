@@ -6,6 +6,7 @@
 // REDRAW: what owns no redrawn pixel is out too.
 
 layout(local_size_x = SHARED_CULL_GROUP) in;
+layout(constant_id = 0) const bool both_eyes = false; // one list, of what either eye sees
 
 layout(scalar, binding = 0) uniform Frame { shared_frame frame; };
 #include "renderer/shared/eye.glsl"
@@ -60,7 +61,7 @@ void main()
     if (lane < group.item_count) {
         uint index = group.first_item + lane;
         shared_item item = items[index];
-        bool v = seen(item, eye);
+        bool v = seen(item, eye) || (both_eyes && seen(item, 1u));
 #ifdef REDRAW
         if (v) {
             atomicAdd(in_frustum, 1);

@@ -5,6 +5,8 @@
 
 layout(local_size_x = SHARED_CULL_GROUP) in;
 layout(constant_id = 0) const int bucket_count = 1;
+layout(constant_id = 1) const bool both_eyes = false; // one list, and every draw in it goes to both
+layout(constant_id = 2) const int instances = 1;
 
 layout(scalar, binding = 0) uniform Frame { shared_frame frame; };
 #include "renderer/shared/eye.glsl"
@@ -34,7 +36,7 @@ void main()
         for (uint i = 0; i < lane; i++)
             before += flags[i];
         draws[eye * frame.item_count + group.bucket_first_item + before] =
-            shared_draw(items[item].index_count, 1, items[item].first_index, 0, item);
+            shared_draw(items[item].index_count, uint(instances), items[item].first_index, 0, item);
     }
     if (lane == 0) {
         uint triangles = 0, own = 0;
@@ -42,8 +44,9 @@ void main()
             own += flags[i];
             triangles += flags[i] * (items[group.first_item + i].index_count / 3);
         }
-        atomicAdd(counters.triangles, triangles);
-        atomicAdd(counters.submodels, own);
+        const uint views = both_eyes ? 2u : 1u;
+        atomicAdd(counters.triangles, views * triangles);
+        atomicAdd(counters.submodels, views * own);
         if (group.last != 0)
             draw_counts[eye * uint(bucket_count) + group.bucket] = base + own;
     }

@@ -7,6 +7,8 @@
 #include "gbuffer.frag_emissive_id.h"
 #include "gbuffer.frag_id.h"
 #include "gbuffer.vert.h"
+#include "gbuffer.vert_instanced.h"
+#include "gbuffer.vert_multiview.h"
 #include "mask.frag.h"
 #include "mask.frag_kept.h"
 #include "mask.vert.h"
@@ -115,14 +117,44 @@ static struct gpu_code fragment_code(const struct gbuffer *g, uint32_t features)
                      : (struct gpu_code){gbuffer_frag, sizeof gbuffer_frag};
 }
 
-// One pipeline for every set of features that occurs in the scene.
-static bool create_pipelines(struct gbuffer *g)
+static uint32_t view_mask(const struct gbuffer *g)
 {
+    return g->eyes == GBUFFER_MULTIVIEW ? 0x3 : 0;
+}
+
+static VkPipeline create_pipeline(const struct gbuffer *g, uint32_t features)
+{
+    const struct gpu_code vertex_code[] = {
+        [GBUFFER_EYE_BY_EYE] = {gbuffer_vert, sizeof gbuffer_vert},
+        [GBUFFER_MULTIVIEW] = {gbuffer_vert_multiview, sizeof gbuffer_vert_multiview},
+        [GBUFFER_INSTANCED] = {gbuffer_vert_instanced, sizeof gbuffer_vert_instanced}};
     const struct gpu_image *images[TARGETS];
     VkFormat formats[TARGETS];
     const uint32_t count = targets(g, images);
     for (uint32_t i = 0; i < count; i++)
         formats[i] = images[i]->format;
+    int32_t constants[SCENE_GPU_FEATURES];
+    for (uint32_t bit = 0; bit < SCENE_GPU_FEATURES; bit++)
+        constants[bit] = (int32_t)(features >> bit & 1);
+    return gpu_raster_create(g->gpu, &(struct gpu_raster_desc){.name = "g-buffer",
+                                                               .vertex = vertex_code[g->eyes],
+                                                               .fragment = fragment_code(g, features),
+                                                               .layout = g->layout,
+                                                               .vertex_binding = &gbuffer_vertex_binding,
+                                                               .attributes = gbuffer_attributes,
+                                                               .attribute_count = GBUFFER_ATTRIBUTES,
+                                                               .colour_formats = formats,
+                                                               .colour_count = count,
+                                                               .depth_format = VK_FORMAT_D32_SFLOAT,
+                                                               .depth_compare = VK_COMPARE_OP_GREATER,
+                                                               .view_mask = view_mask(g),
+                                                               .constants = constants,
+                                                               .constant_count = countof(constants)});
+}
+
+// One pipeline for every set of features that occurs in the scene.
+static bool create_pipelines(struct gbuffer *g)
+{
     for (uint32_t b = 0; b < g->scene->bucket_count; b++) {
         uint32_t features = g->scene->buckets[b].features, known = 0;
         while (known < g->pipeline_count && g->pipelines[known].features != features)
@@ -133,23 +165,7 @@ static bool create_pipelines(struct gbuffer *g)
             gpu_say(g->gpu, GPU_ERROR, "the scene's materials need more than %d pipelines", GBUFFER_PIPELINES);
             return false;
         }
-        int32_t constants[SCENE_GPU_FEATURES];
-        for (uint32_t bit = 0; bit < SCENE_GPU_FEATURES; bit++)
-            constants[bit] = (int32_t)(features >> bit & 1);
-        VkPipeline pipeline =
-            gpu_raster_create(g->gpu, &(struct gpu_raster_desc){.name = "g-buffer",
-                                                                .vertex = {gbuffer_vert, sizeof gbuffer_vert},
-                                                                .fragment = fragment_code(g, features),
-                                                                .layout = g->layout,
-                                                                .vertex_binding = &gbuffer_vertex_binding,
-                                                                .attributes = gbuffer_attributes,
-                                                                .attribute_count = GBUFFER_ATTRIBUTES,
-                                                                .colour_formats = formats,
-                                                                .colour_count = count,
-                                                                .depth_format = VK_FORMAT_D32_SFLOAT,
-                                                                .depth_compare = VK_COMPARE_OP_GREATER,
-                                                                .constants = constants,
-                                                                .constant_count = countof(constants)});
+        VkPipeline pipeline = create_pipeline(g, features);
         if (!pipeline)
             return false;
         g->pipelines[g->pipeline_count].features = features;
@@ -207,6 +223,7 @@ bool gbuffer_init(struct gbuffer *g, const struct gbuffer_desc *desc)
                           .width = desc->width,
                           .height = desc->height,
                           .depth_only = desc->depth_only,
+                          .eyes = desc->eyes,
                           .has_emissive = !desc->depth_only && desc->scene->features & SCENE_GPU_EMISSIVE,
                           .has_id = desc->ids};
     return create_targets(g) && create_layouts(g, desc->frame) && create_pipelines(g) &&
@@ -241,7 +258,7 @@ uint64_t gbuffer_memory(const struct gbuffer *g)
            g->depth.bytes;
 }
 
-// What may be drawn: one rendering of an eye. The first clears depth, the others go on.
+// What may be drawn: one rendering of an eye, or of both. The first clears depth, the others go on.
 struct part {
     VkPipeline before;     // a triangle drawn before it, null: none
     bool statics, movings; // which buckets
@@ -293,6 +310,12 @@ static void draw_buckets(const struct gbuffer *g, VkCommandBuffer cmd, const str
     }
 }
 
+// What a rendering draws into: one eye's layer, or both.
+static VkImageView attached(const struct gbuffer *g, const struct gpu_image *image, uint32_t eye)
+{
+    return g->eyes == GBUFFER_EYE_BY_EYE ? image->layer_views[eye] : image->view;
+}
+
 static void draw_part(const struct gbuffer *g, VkCommandBuffer cmd, const struct gpu_buffer *draws,
                       const struct gpu_buffer *draw_counts, uint32_t eye, uint32_t source,
                       const struct part *part)
@@ -303,7 +326,7 @@ static void draw_part(const struct gbuffer *g, VkCommandBuffer cmd, const struct
     for (uint32_t i = 0; i < count; i++)
         colours[i] =
             (VkRenderingAttachmentInfo){.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
-                                        .imageView = images[i]->layer_views[eye],
+                                        .imageView = attached(g, images[i], eye),
                                         .imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
                                         // the id of the background is 0; the rest is read only under depth
                                         .loadOp = !part->first          ? VK_ATTACHMENT_LOAD_OP_LOAD
@@ -311,7 +334,7 @@ static void draw_part(const struct gbuffer *g, VkCommandBuffer cmd, const struct
                                                                         : VK_ATTACHMENT_LOAD_OP_DONT_CARE,
                                         .storeOp = VK_ATTACHMENT_STORE_OP_STORE};
     VkRenderingAttachmentInfo depth = {.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
-                                       .imageView = g->depth.layer_views[eye],
+                                       .imageView = attached(g, &g->depth, eye),
                                        .imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
                                        .loadOp = part->first ? VK_ATTACHMENT_LOAD_OP_CLEAR
                                                              : VK_ATTACHMENT_LOAD_OP_LOAD,
@@ -319,7 +342,8 @@ static void draw_part(const struct gbuffer *g, VkCommandBuffer cmd, const struct
     const VkRect2D area = {.extent = {g->width, g->height}};
     VkRenderingInfo info = {.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
                             .renderArea = area,
-                            .layerCount = 1,
+                            .layerCount = g->eyes == GBUFFER_INSTANCED ? 2 : 1,
+                            .viewMask = view_mask(g),
                             .pDepthAttachment = &depth};
     const VkPipelineStageFlags2 tests =
         VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
@@ -353,7 +377,7 @@ void gbuffer_record(const struct gbuffer *g, VkCommandBuffer cmd, const struct g
     const bool apart = extent == GBUFFER_MOVING_EVERYWHERE;
     const struct part drawn = {extent == GBUFFER_ALL ? VK_NULL_HANDLE : g->mask, true, !apart, true};
     const struct part moving = {g->kept, false, true, false};
-    for (uint32_t eye = 0; eye < 2; eye++) {
+    for (uint32_t eye = 0; eye < (g->eyes == GBUFFER_EYE_BY_EYE ? 2 : 1); eye++) {
         draw_part(g, cmd, draws, draw_counts, eye, source, &drawn);
         if (apart)
             draw_part(g, cmd, draws, draw_counts, eye, source, &moving);

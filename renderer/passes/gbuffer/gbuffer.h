@@ -13,11 +13,19 @@ enum { GBUFFER_PIPELINES = 64, GBUFFER_ATTRIBUTES = 6 };
 extern const VkVertexInputBindingDescription gbuffer_vertex_binding;
 extern const VkVertexInputAttributeDescription gbuffer_attributes[GBUFFER_ATTRIBUTES];
 
+// How the eyes are drawn. The last two draw both at once, from one list of draws (cull.h).
+enum gbuffer_eyes {
+    GBUFFER_EYE_BY_EYE,
+    GBUFFER_MULTIVIEW, // where gpu->multiview
+    GBUFFER_INSTANCED, // where gpu->output_layer; every draw has two instances
+};
+
 struct gbuffer {
     struct gpu *gpu;
     const struct scene_gpu *scene;
     uint32_t width, height;
     bool depth_only, has_emissive, has_id;
+    enum gbuffer_eyes eyes;
     // two layers each, one per eye
     struct gpu_image base;     // rgba8 sRGB: base colour, occlusion in alpha
     struct gpu_image normal;   // r32 uint: shading normal, octahedral snorm 2x16
@@ -47,6 +55,7 @@ struct gbuffer_desc {
     const struct gpu_buffer *frame;
     uint32_t width, height;
     bool depth_only;         // and ids, where asked for: nothing to shade from
+    enum gbuffer_eyes eyes;  // with a redraw map eye by eye
     bool ids;                // keep moving ids, for modes with history
     VkImageView redraw_map;  // r8 uint, layout GENERAL, two layers; null: every pixel is drawn
     VkImageView position[2]; // rgba32f, GENERAL: of the kept pixels, for GBUFFER_MOVING_EVERYWHERE; else null

@@ -1,6 +1,12 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
+#ifdef MULTIVIEW
+#extension GL_EXT_multiview : require
+#endif
+#ifdef INSTANCED
+#extension GL_ARB_shader_viewport_layer_array : require
+#endif
 #include "renderer/shared/shared.h"
 #include "renderer/shared/normal.glsl"
 #include "renderer/passes/gbuffer/features.glsl"
@@ -9,7 +15,16 @@ layout(scalar, set = 0, binding = 0) uniform Frame { shared_frame frame; };
 layout(scalar, set = 0, binding = 1) readonly buffer Items { shared_item items[]; };
 layout(scalar, set = 0, binding = 2) readonly buffer Objects { shared_object objects[]; };
 layout(scalar, set = 0, binding = 3) readonly buffer Materials { shared_material materials[]; };
+
+// Every draw goes to one eye, or to both: as its views (MULTIVIEW), or as its two instances (INSTANCED).
+#if defined MULTIVIEW
+#define DRAWN_EYE gl_ViewIndex
+#elif defined INSTANCED
+#define DRAWN_EYE (gl_InstanceIndex - gl_BaseInstance)
+#else
 layout(push_constant) uniform Push { uint eye; } push;
+#define DRAWN_EYE push.eye
+#endif
 
 layout(location = 0) in vec3 in_position;
 layout(location = 1) in vec2 in_normal;
@@ -36,10 +51,13 @@ vec2 uv_of(shared_material m, uint slot)
 
 void main()
 {
-    shared_item item = items[gl_InstanceIndex];
+#ifdef INSTANCED
+    gl_Layer = DRAWN_EYE;
+#endif
+    shared_item item = items[gl_BaseInstance];
     mat4 m = objects[item.object].world_from_mesh;
     // the same to the last bit in every pipeline, so that a later pass over the same depths draws the same pixels
-    precise vec4 position = frame.eyes[push.eye].clip_from_world * vec4((m * vec4(in_position, 1.0)).xyz, 1.0);
+    precise vec4 position = frame.eyes[DRAWN_EYE].clip_from_world * vec4((m * vec4(in_position, 1.0)).xyz, 1.0);
     gl_Position = position;
     // normals go with the cofactor matrix, right for mirrored and unevenly scaled objects alike
     mat3 linear = mat3(m);

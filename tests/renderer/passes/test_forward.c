@@ -1,7 +1,9 @@
-// The forward shading of vrs path=hardware, without a map of rates, gives the picture of `regular`: what the
-// two share is shared, and the depths that come first are met to the last bit.
+// What a device may refuse, drawn past the refusal. The forward shading of vrs path=hardware, without a map of
+// rates, gives the picture of `regular`: what the two share is shared, and the depths that come first are met
+// to the last bit. So does multiview, where nothing is clipped: that is what the software driver gets wrong.
 #include "renderer/modes/room.h"
 #include "renderer/passes/shadow/shadow.h"
+#include "tests/renderer/blocks.h"
 #include "tests/renderer/passes/rig.h"
 
 #include <setjmp.h>
@@ -21,13 +23,11 @@ struct bed {
     struct gpu_frame frame;
 };
 
-static void bed_open(struct bed *b, const char *name)
+// Takes the scene.
+static void bed_open(struct bed *b, struct scene *scene)
 {
-    char error[512];
-    *b = (struct bed){0};
+    *b = (struct bed){.scene = scene};
     assert_true(rig_open(&b->rig));
-    b->scene = scene_open(name, error, sizeof error);
-    assert_non_null(b->scene);
     b->gpu_scene = scene_gpu_create(b->rig.gpu, b->scene);
     assert_non_null(b->gpu_scene);
     assert_true(shadow_init(&b->shadow, b->rig.gpu, b->gpu_scene) &&
@@ -84,13 +84,17 @@ static void forward_shades_what_deferred_does(void **state)
     (void)state;
     static uint8_t regular[PIXELS][4], forward[PIXELS][4];
     static const char *const scenes[] = {"atrium", "town:triangles=60000"};
+    const double plain[MODE_PARAMETERS] = {0};          // eyes=separate
     const double values[MODE_PARAMETERS] = {10, 20, 1}; // path=hardware
     for (size_t k = 0; k < countof(scenes); k++) {
         struct bed b;
-        bed_open(&b, scenes[k]);
+        char error[512];
+        struct scene *scene = scene_open(scenes[k], error, sizeof error);
+        assert_non_null(scene);
+        bed_open(&b, scene);
         b.rig.gpu->shading_rate.texel = 0; // a device that has it too
         for (int ssao = 0; ssao < 2; ssao++) {
-            draw(&b, &mode_regular, NULL, ssao, 7, regular);
+            draw(&b, &mode_regular, plain, ssao, 7, regular);
             const uint32_t shaded = draw(&b, &mode_vrs, values, ssao, 7, forward);
             // nothing missed, and nothing hidden but where two surfaces have one depth
             assert_in_range(shaded, PIXELS, PIXELS + PIXELS / 1000);
@@ -112,12 +116,39 @@ static void forward_shades_what_deferred_does(void **state)
     }
 }
 
+static void multiview_draws_what_eye_by_eye_does(void **state)
+{
+    (void)state;
+    static uint8_t apart[PIXELS][4], together[PIXELS][4];
+    static const struct block list[] = {
+        {.middle = {0, 0, -1}, .half = {0.2, 0.3, 0.2}, .colour = {0.8f, 0.2f, 0.1f}},
+        {.middle = {0.6, 0.2, -1.5},
+         .half = {0.3, 0.2, 0.1},
+         .colour = {0.1f, 0.5f, 0.2f},
+         .emissive = {0, 0, 0.1f}},
+        {.middle = {-1, -0.4, -2}, .half = {0.5, 0.5, 0.4}, .colour = {0.2f, 0.2f, 0.7f}},
+    };
+    struct bed b;
+    bed_open(&b,
+             blocks_scene(&(struct blocks){
+                 .list = list, .count = countof(list), .eye = {0, 0, 0}, .target = {0, 0, -1}, .sky = 0.3f}));
+    const double eye_by_eye[MODE_PARAMETERS] = {0}, multiview[MODE_PARAMETERS] = {1};
+    draw(&b, &mode_regular, eye_by_eye, true, 0, apart);
+    draw(&b, &mode_regular, multiview, true, 0, together);
+    assert_memory_equal(apart, together, sizeof apart);
+    assert_memory_not_equal(apart, apart[PIXELS / 2], sizeof apart / 2); // the eyes differ
+    bed_close(&b);
+}
+
 int main(void)
 {
     struct rig probe;
     if (!rig_open(&probe))
         return 77;
     rig_close(&probe);
-    const struct CMUnitTest tests[] = {cmocka_unit_test(forward_shades_what_deferred_does)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(forward_shades_what_deferred_does),
+        cmocka_unit_test(multiview_draws_what_eye_by_eye_does),
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
