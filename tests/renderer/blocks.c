@@ -30,7 +30,8 @@ static void add_face(struct maker *maker, uint32_t material, const struct block 
 
 static void add_block(struct maker *maker, const struct block *b)
 {
-    struct maker_material_desc look = {.name = "block", .roughness = 1};
+    struct maker_material_desc look = {
+        .name = "block", .roughness = 1 - b->smoothness, .metallic = b->metallic};
     for (int i = 0; i < 3; i++) {
         look.colour[i] = b->colour[i];
         look.emissive[i] = b->emissive[i];

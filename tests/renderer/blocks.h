@@ -13,6 +13,7 @@ struct block {
     struct dvec3 middle, half; // metres; half may be zero on any axis
     float colour[3];           // linear; all zero means white
     float emissive[3];
+    float smoothness, metallic;   // smoothness: 1 - roughness
     const struct block_key *keys; // borrowed; NULL: it stands still
     uint32_t key_count;           // at least 2
     bool inside_out;              // seen from within

@@ -14,7 +14,7 @@ layout(binding = 2, rgba8) uniform readonly image2DArray colour;
 layout(scalar, push_constant) uniform Push {
     uint width, height;
     ivec2 left, top;
-    uint has_overlay;
+    uvec2 overlay; // pixels; 0: none
     float fade;
 } push;
 
@@ -32,12 +32,10 @@ void main()
             encoded = colour_encode(mix(colour_decode(encoded), colour_decode(vec3(0.5)), push.fade));
     }
 #endif
-    if (push.has_overlay != 0u) {
-        ivec2 at = pixel - ivec2(push.left[eye], push.top[eye]);
-        if (all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, textureSize(overlay, 0)))) {
-            vec4 over = texelFetch(overlay, at, 0);
-            encoded = mix(encoded, over.rgb, over.a);
-        }
+    ivec2 at = pixel - ivec2(push.left[eye], push.top[eye]);
+    if (all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, ivec2(push.overlay)))) {
+        vec4 over = texelFetch(overlay, at, 0);
+        encoded = mix(encoded, over.rgb, over.a);
     }
     imageStore(screen, pixel + ivec2(eye * int(push.width), 0), vec4(encoded, 1.0));
 }

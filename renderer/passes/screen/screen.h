@@ -6,14 +6,16 @@
 
 struct screen {
     struct gpu *gpu;
-    uint32_t width, height; // per eye
-    struct gpu_image image; // rgba8, sRGB-encoded, 2 * width, layout GENERAL after the first record
-    struct gpu_image overlay;
+    uint32_t width, height;    // per eye
+    struct gpu_image image;    // rgba8, sRGB-encoded, 2 * width, layout GENERAL after the first record
+    struct gpu_image overlay;  // GENERAL after the next record; the upper left part of it is shown
+    struct gpu_buffer staging; // what it will hold
     struct gpu_kernel gray, coloured;
     VkDescriptorSet set;
     VkSampler sampler;
     int32_t left[2], top[2];
-    bool has_overlay;
+    uint32_t overlay_width, overlay_height; // 0: none is shown
+    bool overlay_new, overlay_used;         // to be copied; has left its first layout
     bool used;
 };
 
