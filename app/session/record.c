@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <inttypes.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
@@ -24,93 +25,88 @@ static const char *slot_word(enum plan_slot slot)
     return slot == PLAN_SLOT_NONE ? "none" : plan_slot_name(slot);
 }
 
-static bool say_line(struct recorder *recorder, const char *event, const struct machine_record *record,
-                     const char *details, char *error, size_t error_size)
+// What a handler below has in hand: the line to write after its rows, and the store's sentence.
+static void set_line(struct recorder *recorder, const char *event, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+static void set_line(struct recorder *recorder, const char *event, const char *format, ...)
 {
-    if (event_line(recorder->lines, event, record->at_ns, details))
-        return true;
-    snprintf(error, error_size, "the events file cannot be written: %s; what was answered is stored",
-             strerror(errno));
-    return false;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(recorder->details, sizeof recorder->details, format, arguments);
+    va_end(arguments);
+    recorder->event = event;
 }
 
-static enum recorder_result finish(struct recorder *recorder, const char *event,
-                                   const struct machine_record *record, const char *details, char *error,
-                                   size_t error_size)
+static enum store_result start_trial(struct recorder *recorder, const struct machine_record *record,
+                                     struct store_error *why)
 {
-    return say_line(recorder, event, record, details, error, error_size) ? RECORDER_DONE : RECORDER_FAILED;
-}
-
-static enum recorder_result start_trial(struct recorder *recorder, const struct machine_record *record,
-                                        char *error, size_t error_size)
-{
-    struct store_error why;
     const struct plan_trial *trial = &recorder->plan->trials[record->trial];
     int64_t id = recorder->ids->trial_ids[record->trial], attempt = 0;
-    if (store_start_trial(recorder->store, id, recorder->ids->segment_id, record->at_ns, &attempt, &why) !=
-        STORE_OK) {
-        snprintf(error, error_size, "%s", why.text);
-        return RECORDER_FAILED;
-    }
+    enum store_result result =
+        store_start_trial(recorder->store, id, recorder->ids->segment_id, record->at_ns, &attempt, why);
+    if (result != STORE_OK)
+        return result;
     recorder->trial_id = id;
     recorder->attempt = (uint32_t)attempt;
-    char details[256];
-    snprintf(details, sizeof details,
+    set_line(recorder, "trial",
              "\"trial\":%" PRIu32 ",\"attempt\":%" PRId64 ",\"of\":%" PRIu32 ",\"kind\":\"%s\"", trial->ordinal,
              attempt, recorder->plan->trial_count, protocol_kind_name(trial->kind));
-    return finish(recorder, "trial", record, details, error, error_size);
+    return STORE_OK;
 }
 
-static enum recorder_result store_answer(struct recorder *recorder, const struct machine_record *record,
-                                         char *error, size_t error_size)
+static enum store_result store_choice_row(struct recorder *recorder, const struct machine_record *record,
+                                          int64_t *out_row, struct store_error *why)
 {
-    struct store_error why;
-    enum store_result result;
-    const struct plan_trial *trial = &recorder->plan->trials[record->trial];
-    int64_t trial_id = recorder->ids->trial_ids[record->trial], row = 0;
-    bool choice = record->kind == MACHINE_CHOICE;
-    if (choice) {
-        result = store_answer_choice(recorder->store,
-                                     &(struct store_choice){.trial_id = trial_id,
-                                                            .segment_id = recorder->ids->segment_id,
-                                                            .chosen = stored_slot(record->slot),
-                                                            .reaction_ns = record->reaction_ns,
-                                                            .answered_ns = record->at_ns,
-                                                            .toggles = record->toggles,
-                                                            .ends_trial = true},
-                                     &row, &why);
-    } else {
-        const struct protocol_question *question = trial->question;
-        int64_t condition = trial->option[0] >= 0 ? recorder->ids->condition_ids[trial->option[0]] : 0;
-        result = store_answer_rating(recorder->store,
-                                     &(struct store_rating){.trial_id = trial_id,
-                                                            .segment_id = recorder->ids->segment_id,
-                                                            .question = question->name,
-                                                            .subject = "scene",
-                                                            .condition_id = condition,
-                                                            .value = record->value,
-                                                            .scale_min = question->scale_min,
-                                                            .scale_max = question->scale_max,
-                                                            .answered_ns = record->at_ns,
-                                                            .ends_trial = true},
-                                     &row, &why);
-    }
-    if (result != STORE_OK) {
-        snprintf(error, error_size, "%s", why.text);
-        return RECORDER_FAILED;
-    }
-    char details[256], value[16];
-    snprintf(value, sizeof value, "%" PRId32, record->value);
-    snprintf(details, sizeof details,
-             "\"table\":\"%s\",\"row\":%" PRId64 ",\"trial\":%" PRIu32 ",\"value\":%s%s%s",
-             choice ? "choice" : "rating", row, trial->ordinal, choice ? "\"" : "",
-             choice ? slot_word(record->slot) : value, choice ? "\"" : "");
-    if (!say_line(recorder, "answer", record, details, error, error_size))
-        return RECORDER_FAILED;
-    return RECORDER_ANSWERED;
+    struct store_choice choice = {.trial_id = recorder->ids->trial_ids[record->trial],
+                                  .segment_id = recorder->ids->segment_id,
+                                  .chosen = stored_slot(record->slot),
+                                  .reaction_ns = record->reaction_ns,
+                                  .answered_ns = record->at_ns,
+                                  .toggles = record->toggles,
+                                  .ends_trial = true};
+    return store_answer_choice(recorder->store, &choice, out_row, why);
 }
 
-static enum recorder_result push_exposure(struct recorder *recorder, const struct machine_record *record)
+static enum store_result store_rating_row(struct recorder *recorder, const struct machine_record *record,
+                                          int64_t *out_row, struct store_error *why)
+{
+    const struct plan_trial *trial = &recorder->plan->trials[record->trial];
+    struct store_rating rating = {
+        .trial_id = recorder->ids->trial_ids[record->trial],
+        .segment_id = recorder->ids->segment_id,
+        .question = trial->question->name,
+        .subject = "scene",
+        .condition_id = trial->option[0] >= 0 ? recorder->ids->condition_ids[trial->option[0]] : 0,
+        .value = record->value,
+        .scale_min = trial->question->scale_min,
+        .scale_max = trial->question->scale_max,
+        .answered_ns = record->at_ns,
+        .ends_trial = true};
+    return store_answer_rating(recorder->store, &rating, out_row, why);
+}
+
+static enum store_result store_answer(struct recorder *recorder, const struct machine_record *record,
+                                      struct store_error *why)
+{
+    int64_t row = 0;
+    bool choice = record->kind == MACHINE_CHOICE;
+    uint32_t ordinal = recorder->plan->trials[record->trial].ordinal;
+    enum store_result result =
+        choice ? store_choice_row(recorder, record, &row, why) : store_rating_row(recorder, record, &row, why);
+    if (result != STORE_OK)
+        return result;
+    if (choice)
+        set_line(recorder, "answer",
+                 "\"table\":\"choice\",\"row\":%" PRId64 ",\"trial\":%" PRIu32 ",\"value\":\"%s\"", row,
+                 ordinal, slot_word(record->slot));
+    else
+        set_line(recorder, "answer",
+                 "\"table\":\"rating\",\"row\":%" PRId64 ",\"trial\":%" PRIu32 ",\"value\":%" PRId32, row,
+                 ordinal, record->value);
+    return STORE_OK;
+}
+
+static enum store_result push_exposure(struct recorder *recorder, const struct machine_record *record)
 {
     bool full = record->full_start_ns >= 0 && record->full_end_ns >= 0;
     // A dropped row is counted and reported by the store itself.
@@ -123,7 +119,7 @@ static enum recorder_result push_exposure(struct recorder *recorder, const struc
                                                  .end_ns = record->end_ns,
                                                  .full_start_ns = full ? record->full_start_ns : STORE_UNKNOWN,
                                                  .full_end_ns = full ? record->full_end_ns : STORE_UNKNOWN});
-    return RECORDER_DONE;
+    return STORE_OK;
 }
 
 static void push_event(struct recorder *recorder, const struct machine_record *record, const char *detail)
@@ -138,90 +134,110 @@ static void push_event(struct recorder *recorder, const struct machine_record *r
                                            .detail = detail});
 }
 
-static enum recorder_result note_toggle(struct recorder *recorder, const struct machine_record *record,
-                                        char *error, size_t error_size)
+static enum store_result note_toggle(struct recorder *recorder, const struct machine_record *record)
 {
-    char details[128];
+    char details[64];
     snprintf(details, sizeof details, "{\"slot\":\"%s\"}", slot_word(record->slot));
     push_event(recorder, record, details);
-    snprintf(details, sizeof details, "\"trial\":%" PRIu32 ",\"slot\":\"%s\",\"ignored\":%s",
+    set_line(recorder, "toggle", "\"trial\":%" PRIu32 ",\"slot\":\"%s\",\"ignored\":%s",
              recorder->plan->trials[record->trial].ordinal, slot_word(record->slot),
              record->kind == MACHINE_TOGGLE_IGNORED ? "true" : "false");
-    return finish(recorder, "toggle", record, details, error, error_size);
+    return STORE_OK;
 }
 
-static enum recorder_result note_gap(struct recorder *recorder, const struct machine_record *record,
-                                     char *error, size_t error_size)
+static enum store_result note_gap(struct recorder *recorder, const struct machine_record *record)
 {
-    char details[128];
+    char details[64];
     snprintf(details, sizeof details, "{\"ns\":%" PRId64 "}", record->value_ns);
     push_event(recorder, record, details);
-    snprintf(details, sizeof details, "\"reason\":\"%s\",\"ns\":%" PRId64, machine_record_name(record->kind),
+    set_line(recorder, "gap", "\"reason\":\"%s\",\"ns\":%" PRId64, machine_record_name(record->kind),
              record->value_ns);
-    return finish(recorder, "gap", record, details, error, error_size);
+    return STORE_OK;
 }
 
-static enum recorder_result give_consent(struct recorder *recorder, const struct machine_record *record,
-                                         char *error, size_t error_size)
+static enum store_result give_consent(struct recorder *recorder, const struct machine_record *record,
+                                      struct store_error *why)
 {
     char now[RECORD_TIME];
-    struct store_error why;
     record_time_utc(now);
-    push_event(recorder, record, NULL);
     const char *version = recorder->plan->protocol->consent_version;
-    if (store_set_consent(recorder->store, recorder->ids->session_id, now, version, &why) == STORE_OK)
-        return RECORDER_DONE;
-    snprintf(error, error_size, "%s", why.text);
-    return RECORDER_FAILED;
+    enum store_result result = store_set_consent(recorder->store, recorder->ids->session_id, now, version, why);
+    if (result == STORE_OK)
+        push_event(recorder, record, NULL);
+    return result;
 }
 
-static enum recorder_result end_session(struct recorder *recorder, const struct machine_record *record,
-                                        char *error, size_t error_size)
+static enum store_result end_session(struct recorder *recorder, const struct machine_record *record,
+                                     struct store_error *why)
 {
-    char now[RECORD_TIME], details[64];
-    struct store_error why;
+    char now[RECORD_TIME];
     const char *status = record->complete ? "complete" : "aborted";
     record_time_utc(now);
-    // A trial that was under way has no answer and gets none.
-    if (recorder->trial_id &&
-        store_end_trial(recorder->store, recorder->trial_id, "skipped", record->at_ns, &why) != STORE_OK) {
-        snprintf(error, error_size, "%s", why.text);
-        return RECORDER_FAILED;
+    enum store_result result =
+        store_end_session(recorder->store, recorder->ids->session_id, status, now, record->at_ns, why);
+    if (result == STORE_OK)
+        set_line(recorder, "end", "\"status\":\"%s\"", status);
+    return result;
+}
+
+static enum store_result write_rows(struct recorder *recorder, const struct machine_record *record,
+                                    struct store_error *why)
+{
+    switch (record->kind) {
+    case MACHINE_CONSENT_GIVEN:
+        return give_consent(recorder, record, why);
+    case MACHINE_TRIAL_STARTED:
+        return start_trial(recorder, record, why);
+    case MACHINE_TRIAL_DONE: // the answer's transaction ended the trial already
+        recorder->trial_id = 0;
+        recorder->attempt = 0;
+        return STORE_OK;
+    case MACHINE_EXPOSURE:
+        return push_exposure(recorder, record);
+    case MACHINE_TOGGLE:
+    case MACHINE_TOGGLE_IGNORED:
+        return note_toggle(recorder, record);
+    case MACHINE_CHOICE:
+    case MACHINE_RATING:
+        return store_answer(recorder, record, why);
+    case MACHINE_CLOCK_BACK:
+        return note_gap(recorder, record);
+    case MACHINE_ENDED:
+        return end_session(recorder, record, why);
+    default:
+        push_event(recorder, record, NULL);
+        return STORE_OK;
     }
-    if (store_end_session(recorder->store, recorder->ids->session_id, status, now, &why) != STORE_OK) {
-        snprintf(error, error_size, "%s", why.text);
-        return RECORDER_FAILED;
-    }
-    snprintf(details, sizeof details, "\"status\":\"%s\"", status);
-    return finish(recorder, "end", record, details, error, error_size);
+}
+
+// Whether a line may still get through later: a disk makes room, a reader that went away does not come back.
+static bool passes(int reason)
+{
+    return reason == ENOSPC || reason == EDQUOT || reason == EFBIG || reason == EIO || reason == EAGAIN ||
+           reason == EINTR;
 }
 
 enum recorder_result recorder_take(struct recorder *recorder, const struct machine_record *record, char *error,
                                    size_t error_size)
 {
-    switch (record->kind) {
-    case MACHINE_CONSENT_GIVEN:
-        return give_consent(recorder, record, error, error_size);
-    case MACHINE_TRIAL_STARTED:
-        return start_trial(recorder, record, error, error_size);
-    case MACHINE_TRIAL_DONE: // the answer's transaction ended the trial already
-        recorder->trial_id = 0;
-        recorder->attempt = 0;
-        return RECORDER_DONE;
-    case MACHINE_EXPOSURE:
-        return push_exposure(recorder, record);
-    case MACHINE_TOGGLE:
-    case MACHINE_TOGGLE_IGNORED:
-        return note_toggle(recorder, record, error, error_size);
-    case MACHINE_CHOICE:
-    case MACHINE_RATING:
-        return store_answer(recorder, record, error, error_size);
-    case MACHINE_CLOCK_BACK:
-        return note_gap(recorder, record, error, error_size);
-    case MACHINE_ENDED:
-        return end_session(recorder, record, error, error_size);
-    default:
-        push_event(recorder, record, NULL);
-        return RECORDER_DONE;
+    if (!recorder->line_waits) {
+        struct store_error why;
+        recorder->event = NULL;
+        enum store_result result = write_rows(recorder, record, &why);
+        if (result != STORE_OK) {
+            snprintf(error, error_size, "%s", why.text);
+            return result == STORE_FAILED ? RECORDER_WAIT : RECORDER_FAILED;
+        }
+        recorder->line_waits = recorder->event != NULL;
     }
+    if (recorder->line_waits &&
+        !event_line(recorder->lines, recorder->event, record->at_ns, recorder->details)) {
+        int reason = errno;
+        snprintf(error, error_size, "the events file cannot be written: %s; what was answered is stored",
+                 strerror(reason));
+        return passes(reason) ? RECORDER_WAIT : RECORDER_FAILED;
+    }
+    recorder->line_waits = false;
+    bool answer = record->kind == MACHINE_CHOICE || record->kind == MACHINE_RATING;
+    return answer ? RECORDER_ANSWERED : RECORDER_DONE;
 }

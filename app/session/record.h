@@ -1,7 +1,8 @@
 // Writes what the session's state machine reports: trials, answers, exposures and events into the store, and
 // the event lines that others watch. An answer is committed before its line is written.
 //
-// Use: fill a struct recorder -> recorder_take each machine record in order. Does not: own anything.
+// Use: fill a struct recorder -> recorder_take each machine record in order; after RECORDER_WAIT the same
+// record again, until it is taken. Does not: own anything, wait.
 #ifndef APP_SESSION_RECORD_H
 #define APP_SESSION_RECORD_H
 
@@ -12,6 +13,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+enum { RECORDER_DETAILS = 256 };
+
 struct recorder {
     struct store *store;
     const struct plan *plan;
@@ -19,12 +22,17 @@ struct recorder {
     struct event_lines *lines;
     int64_t trial_id; // the running trial, 0: none
     uint32_t attempt; // of it
+    // The recorder's own: a record whose rows are written and whose line is not.
+    bool line_waits;
+    const char *event;
+    char details[RECORDER_DETAILS];
 };
 
 enum recorder_result {
     RECORDER_DONE,
     RECORDER_ANSWERED, // an answer is on disk: the machine may go on
-    RECORDER_FAILED,   // one sentence in `error`
+    RECORDER_WAIT,     // the disk is in the way, nothing is lost: one sentence in `error`
+    RECORDER_FAILED,   // it can never be taken: one sentence in `error`
 };
 
 enum recorder_result recorder_take(struct recorder *recorder, const struct machine_record *record, char *error,

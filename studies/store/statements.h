@@ -21,6 +21,8 @@ enum sql_statement {
     SQL_INSERT_TRIAL,
     SQL_SET_CONSENT,
     SQL_END_SESSION,
+    SQL_SKIP_RUNNING,
+    SQL_COUNT_SESSIONS,
     // trial.c, answer.c
     SQL_START_TRIAL,
     SQL_GET_ATTEMPT,

@@ -82,6 +82,9 @@ struct store *store_open(const struct store_desc *desc, struct store_error *erro
 // The store is gone in any case; NULL is fine.
 enum store_result store_close(struct store *store, struct store_error *error);
 
+// From now on a write waits at most this long for another program's: a running session must not stand still.
+void store_set_busy(struct store *store, uint32_t busy_ms);
+
 // Reads the whole file: SQLite's integrity_check and foreign_key_check. Minutes for gigabytes.
 enum store_result store_check(struct store *store, struct store_error *error);
 
@@ -171,9 +174,10 @@ enum store_result store_add_trial(struct store *store, int64_t session_id, const
 // The id of an equal condition, or of a new row.
 enum store_result store_add_condition(struct store *store, const struct store_condition *condition,
                                       int64_t *out_id, struct store_error *error);
-// status "complete" or "aborted"; only a running session can end.
+// status "complete" or "aborted"; only a running session can end. A trial that runs has no answer and gets
+// none: it is skipped, at ended_ns.
 enum store_result store_end_session(struct store *store, int64_t session_id, const char *status,
-                                    const char *ended_at, struct store_error *error);
+                                    const char *ended_at, int64_t ended_ns, struct store_error *error);
 
 // --- trials and answers ---
 

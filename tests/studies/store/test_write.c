@@ -37,10 +37,11 @@ static void test_session(void **state)
     expect_result(store_set_consent(store, 1, "2026-01-02T03:04:06Z", "v2", &error), STORE_OK, &error);
     expect_result(store_set_consent(store, 1, "2026-01-02T03:04:06Z", NULL, &error), STORE_REFUSED, &error);
     expect_result(store_set_consent(store, 9, "2026-01-02T03:04:06Z", "v2", &error), STORE_REFUSED, &error);
-    expect_result(store_end_session(store, 1, "finished", "2026-01-02T04:00:00Z", &error), STORE_REFUSED,
+    expect_result(store_end_session(store, 1, "finished", "2026-01-02T04:00:00Z", 99, &error), STORE_REFUSED,
                   &error);
-    expect_result(store_end_session(store, 1, "complete", "2026-01-02T04:00:00Z", &error), STORE_OK, &error);
-    expect_result(store_end_session(store, 1, "aborted", "2026-01-02T04:00:00Z", &error), STORE_REFUSED,
+    expect_result(store_end_session(store, 1, "complete", "2026-01-02T04:00:00Z", 99, &error), STORE_OK,
+                  &error);
+    expect_result(store_end_session(store, 1, "aborted", "2026-01-02T04:00:00Z", 99, &error), STORE_REFUSED,
                   &error);
     expect_sentence(&error, "session 1 is not running");
     fixture_close(store);
