@@ -135,7 +135,7 @@ start ends --patience 0.5
 mv ends.db away.db
 wait $program
 [ $? = 1 ] || fail "status $?"
-grep -q '^fovstudy: /.*removed or replaced' ends.err || fail "nothing was said"
+grep -q '^fovstudy: gave up after .*removed or replaced' ends.err || fail "nothing was said"
 mv away.db ends.db
 before=$(answers)
 "$fovstudy" resume --db ends.db --events ends.jsonl 2>>ends.err &
