@@ -151,15 +151,28 @@ static bool bindings_known(const struct protocol *protocol, const struct bound_s
     return true;
 }
 
-struct protocol *study_load(const char *path, const struct study_names *names, const struct bound_scene *bound,
-                            size_t count, char *error, size_t error_size)
+static struct protocol *checked(const char *path, struct protocol *protocol, const struct bound_scene *bound,
+                                size_t count, char *error, size_t error_size)
 {
     char why[512];
-    struct protocol *protocol = protocol_load(path, &names->catalogue, error, error_size);
     if (!protocol || (conditions_agree(protocol, why, sizeof why) &&
                       bindings_known(protocol, bound, count, why, sizeof why)))
         return protocol;
     snprintf(error, error_size, "%s: %s", path, why);
     protocol_destroy(protocol);
     return NULL;
+}
+
+struct protocol *study_load(const char *path, const struct study_names *names, const struct bound_scene *bound,
+                            size_t count, char *error, size_t error_size)
+{
+    struct protocol *protocol = protocol_load(path, &names->catalogue, error, error_size);
+    return checked(path, protocol, bound, count, error, error_size);
+}
+
+struct protocol *study_parse(const char *name, const char *text, const struct study_names *names,
+                             const struct bound_scene *bound, size_t count, char *error, size_t error_size)
+{
+    struct protocol *protocol = protocol_parse(name, text, strlen(text), &names->catalogue, error, error_size);
+    return checked(name, protocol, bound, count, error, error_size);
 }

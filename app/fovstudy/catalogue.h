@@ -45,4 +45,8 @@ void study_names_finish(struct study_names *names);
 struct protocol *study_load(const char *path, const struct study_names *names, const struct bound_scene *bound,
                             size_t count, char *error, size_t error_size);
 
+// The same from a text that a study file holds; `name` stands for the file in errors.
+struct protocol *study_parse(const char *name, const char *text, const struct study_names *names,
+                             const struct bound_scene *bound, size_t count, char *error, size_t error_size);
+
 #endif

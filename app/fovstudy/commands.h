@@ -4,6 +4,8 @@
 #define APP_FOVSTUDY_COMMANDS_H
 
 int command_run(int argc, char **argv);
+int command_resume(int argc, char **argv);
+int command_forget(int argc, char **argv);
 int command_check(int argc, char **argv);
 int command_modes(int argc, char **argv);
 int command_scenes(int argc, char **argv);

@@ -57,19 +57,43 @@ static bool read_attributes(struct run_study *study, const struct run_options *o
     return true;
 }
 
-bool run_study_init(struct run_study *study, const struct run_options *options, char *error, size_t error_size)
+static bool start_study(struct run_study *study, const struct run_options *options, char *error,
+                        size_t error_size)
 {
     *study = (struct run_study){0};
-    if (!study_names_init(&study->names, options->scenes, options->scene_count)) {
-        snprintf(error, error_size, "out of memory");
-        return false;
-    }
-    study->protocol =
-        study_load(options->protocol, &study->names, options->scenes, options->scene_count, error, error_size);
-    if (!study->protocol || !read_attributes(study, options, error, error_size))
-        return false;
+    if (study_names_init(&study->names, options->scenes, options->scene_count))
+        return true;
+    snprintf(error, error_size, "out of memory");
+    return false;
+}
+
+static bool read_observer(struct run_study *study, const struct run_options *options, char *error,
+                          size_t error_size)
+{
     observer_defaults(&study->observer);
     return !options->observer || observer_parse(options->observer, &study->observer, error, error_size);
+}
+
+bool run_study_init(struct run_study *study, const struct run_options *options, char *error, size_t error_size)
+{
+    if (!start_study(study, options, error, error_size))
+        return false;
+    study->protocol =
+        study_load(options->protocol, &study->names, options->scenes, options->scene_count, error, error_size);
+    return study->protocol && read_attributes(study, options, error, error_size) &&
+           read_observer(study, options, error, error_size);
+}
+
+bool run_study_init_stored(struct run_study *study, const struct run_options *options,
+                           const struct store_session_start *start, char *error, size_t error_size)
+{
+    char name[PROTOCOL_NAME + 64];
+    if (!start_study(study, options, error, error_size))
+        return false;
+    snprintf(name, sizeof name, "protocol '%s' in the study file", start->protocol_name);
+    study->protocol = study_parse(name, start->protocol_text, &study->names, options->scenes,
+                                  options->scene_count, error, error_size);
+    return study->protocol && read_observer(study, options, error, error_size);
 }
 
 void run_study_finish(struct run_study *study)

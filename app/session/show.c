@@ -162,7 +162,8 @@ static bool draw_option(struct show *show, const struct machine_view *view, cons
         snprintf(error, error_size, "the GPU could not draw frame %llu", (unsigned long long)show->number);
         return false;
     }
-    bool is_reference = show->desc->ids->condition_ids[view->condition] == show->desc->reference_id;
+    int64_t condition_id = recorder_condition(recorder, view->trial, view->slot);
+    bool is_reference = condition_id == show->desc->reference_id;
     if (show->measure && !is_reference && measure_due(show->measure, view) &&
         !measure_take(show->measure, (uint32_t)view->condition, scene_index(show, view->trial_index), option,
                       stage_reference(show->desc->stage), &frame)) {
@@ -172,7 +173,7 @@ static bool draw_option(struct show *show, const struct machine_view *view, cons
     }
     tell_redraw(show, view, recorder, row->start_ns, stats.redraw);
     fill_fovea(&use, source, row);
-    row->condition_id = show->desc->ids->condition_ids[view->condition];
+    row->condition_id = condition_id;
     row->cpu_us = stats.cpu_ms * 1e3;
     row->gpu_us = stats.gpu_ms * 1e3;
     row->shaded_px = (int64_t)stats.shaded_px;

@@ -5,6 +5,7 @@
 #include "studies/protocol/text.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,6 +23,16 @@ const char *plan_slot_name(enum plan_slot slot)
 const char *plan_trial_kind(const struct plan_trial *trial)
 {
     return trial->role == PROTOCOL_MAIN ? protocol_kind_name(trial->kind) : protocol_role_name(trial->role);
+}
+
+struct protocol_option plan_level_option(const struct plan *plan, const struct plan_trial *trial, double level)
+{
+    const struct protocol_block *block = &plan->protocol->blocks[trial->block];
+    struct protocol_option option = block->cells[trial->cell].option[0];
+    char digits[32];
+    snprintf(digits, sizeof digits, "%.9g", level);
+    option.values[block->staircase.parameter] = strtod(digits, NULL);
+    return option;
 }
 
 // Index of a condition, added where it is new; -1: its JSON does not fit.

@@ -308,6 +308,14 @@ enum store_result store_flush(struct store *store, struct store_error *error)
     return sql_end(store, sql_begin(store, error), error);
 }
 
+void store_set_busy(struct store *store, uint32_t busy_ms)
+{
+    pthread_mutex_lock(&store->mutex);
+    store->busy_ms = busy_ms;
+    sqlite3_busy_timeout(store->db, (int)busy_ms);
+    pthread_mutex_unlock(&store->mutex);
+}
+
 enum store_result store_check(struct store *store, struct store_error *error)
 {
     static const char *const checks[] = {

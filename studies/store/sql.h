@@ -34,6 +34,8 @@ struct store {
 void sql_say(struct store_error *error, const char *format, ...) __attribute__((format(printf, 2, 3)));
 // Turns an SQLite result code into ours, with a sentence that names the file.
 enum store_result sql_failure(struct store *store, int code, struct store_error *error);
+// Whether the path still names the file that was opened.
+bool sql_file_there(const struct store *store);
 enum store_result sql_execute(struct store *store, const char *sql, struct store_error *error);
 
 struct sql_value {

@@ -4,11 +4,16 @@
 
 #include <sys/stat.h>
 
+bool sql_file_there(const struct store *store)
+{
+    struct stat now;
+    return stat(store->path, &now) == 0 && now.st_dev == store->device && now.st_ino == store->inode;
+}
+
 // SQLite goes on writing to a file that was removed or replaced under it, and nobody would ever see those rows.
 static enum store_result check_file(struct store *store, struct store_error *error)
 {
-    struct stat now;
-    if (stat(store->path, &now) == 0 && now.st_dev == store->device && now.st_ino == store->inode)
+    if (sql_file_there(store))
         return STORE_OK;
     sql_say(error, "%s: the file was removed or replaced while in use; put it back and go on", store->path);
     return STORE_FAILED;
