@@ -121,6 +121,7 @@ static enum session_result go_on(struct run *run, const struct store_session_sta
                                        .attempts = run->rows.attempts,
                                        .answers = run->rows.answers,
                                        .outcomes = run->rows.outcomes,
+                                       .adjusted = (const double(*)[PROTOCOL_ADJUSTED])run->rows.adjusted,
                                        .repeats = run->rows.repeats,
                                        .repeat_count = run->rows.repeat_count};
     if (isatty(STDERR_FILENO))

@@ -272,6 +272,9 @@ static void note_place(struct run_rows *rows, uint32_t place, const struct plan_
     rows->attempts[place] = (uint32_t)trial->attempt;
     rows->answers[place] = answers_of(rows->plan, planned, trial);
     rows->outcomes[place] = (int32_t)trial->outcome;
+    char *value = (char *)trial->values;
+    for (uint32_t i = 0; i < PROTOCOL_ADJUSTED; i++)
+        rows->adjusted[place][i] = strtod(value, &value);
     rows->done[place] = strcmp(trial->status, "planned") != 0 && strcmp(trial->status, "running") != 0;
     rows->done_count += rows->done[place];
 }
@@ -300,7 +303,9 @@ static bool make_room(struct run_rows *rows, uint32_t places)
     rows->repeats = repeats ? repeats : rows->repeats;
     int32_t *outcomes = realloc(rows->outcomes, capacity * sizeof *outcomes);
     rows->outcomes = outcomes ? outcomes : rows->outcomes;
-    if (!ids || !done || !attempts || !answers || !repeats || !outcomes)
+    double(*adjusted)[PROTOCOL_ADJUSTED] = realloc(rows->adjusted, capacity * sizeof *adjusted);
+    rows->adjusted = adjusted ? adjusted : rows->adjusted;
+    if (!ids || !done || !attempts || !answers || !repeats || !outcomes || !adjusted)
         return false;
     rows->capacity = capacity;
     return true;
@@ -323,11 +328,12 @@ static bool take_repeat(struct comparison *comparison, const struct store_planne
     return true;
 }
 
-// A staircase's option under test is known only once a trial has begun.
+// A staircase's option under test is known only when a trial begins, a moment before its first attempt is
+// stored.
 static bool same_options(struct comparison *comparison, const struct store_planned *trial,
                          const struct plan_trial *planned)
 {
-    bool drawn = planned->kind == PROTOCOL_STAIRCASE && trial->attempt > 0;
+    bool drawn = planned->kind == PROTOCOL_STAIRCASE;
     return ((drawn && planned->test_slot == PLAN_SLOT_A) ||
             same_option(comparison, trial, planned->option[0], trial->option_a, trial->mode_a,
                         trial->parameters_a)) &&

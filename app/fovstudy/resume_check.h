@@ -8,7 +8,7 @@
 
 // Fills in what was not given as the session was started with, and refuses what differs. `observer` holds the
 // stored observer's text while the options are used.
-enum { RESUME_OBSERVER = 1024 };
+enum { RESUME_OBSERVER = 2048 };
 bool resume_options(struct run_options *options, const struct store_session_start *start,
                     char observer[RESUME_OBSERVER], char *error, size_t error_size);
 // The attributes that were given, against the stored ones.

@@ -10,6 +10,7 @@
 enum option {
     DB,
     PARTICIPANT,
+    PARTICIPANTS, // run only
     SEED,
     NUMBER,
     DISPLAY,
@@ -34,6 +35,8 @@ enum option {
 static const struct option_spec specs[OPTIONS + 1] = {
     [DB] = {"db", "FILE", "the study file; made where there is none"},
     [PARTICIPANT] = {"participant", "CODE", "a code for the participant, never a name"},
+    [PARTICIPANTS] = {"participants", "N",
+                      "run: N simulated ones instead, one after the other: S001, S002, ..."},
     [SEED] = {"seed", "N", "instead of the protocol's seed"},
     [NUMBER] = {"number", "N", "the participant's number, from 1; else the first free one"},
     [DISPLAY] = {"display", "D", "window (default), monitor:N, headless, or none: nothing is drawn"},
@@ -65,8 +68,9 @@ static const char about[] =
     "Right or 2 chooses B, numbers and arrows mark a rating, Enter confirms, P pauses, Escape ends.\n"
     "\n"
     "A simulated observer (--observer sim:name=value,...) has threshold, slope, lapse, side_bias,\n"
-    "toggles_mean, dwell_s, dwell_spread, rating_mean, rating_sd, rating_drop, view_s, answer_s, and\n"
-    "errors=FILE. With --display none it answers from the errors that an earlier session measured and\n"
+    "toggles_mean, dwell_s, dwell_spread, rating_mean, rating_sd, rating_drop, view_s, answer_s, equal_band,\n"
+    "count_error, late (share of deadlines missed), and errors=FILE. With --display none it answers from the "
+    "errors that an earlier session measured and\n"
     "left in the study file, else from that file: lines of SCENE,ERROR,MODE[:p=v,...], ERROR the\n"
     "eccentricity-weighted RMSE against the reference, 0 to 1.";
 
@@ -89,6 +93,10 @@ static int set_numbers(struct run_options *out, enum option option, const char *
     case NUMBER:
         out->has_number = options_uint64(value, 1, 1000000, &out->number);
         return out->has_number ? -1 : wrong_value(out, option, value, "a whole number from 1 to 1000000");
+    case PARTICIPANTS:
+        return options_uint64(value, 1, RUN_PARTICIPANTS, &out->participants)
+                   ? -1
+                   : wrong_value(out, option, value, "a whole number from 1 to 999");
     case SIZE:
         return options_size(value, &out->width, &out->height)
                    ? -1
@@ -141,7 +149,7 @@ static int set_word(struct run_options *out, const char *value)
 
 static int set(struct run_options *out, int option, const char *value)
 {
-    if (option == (out->resume ? AGAIN : PROTOCOL))
+    if (out->resume ? option == AGAIN || option == PARTICIPANTS : option == PROTOCOL)
         return options_wrong(command_name(out), "there is no option '--%s' here", specs[option].name);
     switch (option) {
     case OPTIONS_WORD:
@@ -207,7 +215,11 @@ static int check(struct run_options *out)
                              out->resume ? "of which study? give --db FILE" : "where to? give --db FILE");
     if (out->resume)
         return -1;
-    if (!out->participant || !*out->participant)
+    if (out->participants && (out->participant || out->has_number || !out->observer))
+        return options_wrong("fovstudy run",
+                             "--participants is for simulated ones, who have codes and numbers of "
+                             "their own: give --observer sim, and no --participant or --number");
+    if (!out->participants && (!out->participant || !*out->participant))
         return options_wrong("fovstudy run", "who takes part? give --participant CODE");
     if (!out->display)
         out->display = "window";

@@ -8,7 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { RUN_ATTRIBUTES = 32 };
+enum { RUN_ATTRIBUTES = 32, RUN_PARTICIPANTS = 999 };
 
 // Strings are borrowed, from argv or from a resumed session; NULL where not given.
 struct run_options {
@@ -27,6 +27,7 @@ struct run_options {
     uint64_t seed, number;
     bool has_seed, has_number;
     bool unblind, again;
+    uint64_t participants; // simulated ones, one after the other; 0: the one named
 };
 
 // -1 to go on, else the exit status (help and wrong usage have been printed). For a resumed session what is not

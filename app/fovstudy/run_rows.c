@@ -84,13 +84,9 @@ static char *settings_json(const struct run_options *options, const struct run_s
     json_string(out, view->gaze_name);
     fprintf(out, ",\"ipd_m\":%g,\"unblind\":%s", VIEWING_DEFAULT_IPD_M, options->unblind ? "true" : "false");
     if (options->observer) {
-        const struct observer_parameters *o = &study->observer;
-        fprintf(out,
-                ",\"observer\":{\"threshold\":%.17g,\"slope\":%.17g,\"lapse\":%.17g,\"side_bias\":%.17g,"
-                "\"toggles_mean\":%.17g,\"dwell_s\":%.17g,\"dwell_spread\":%.17g,\"rating_mean\":%.17g,"
-                "\"rating_sd\":%.17g,\"rating_drop\":%.17g,\"view_s\":%.17g,\"answer_s\":%.17g}",
-                o->threshold, o->slope, o->lapse, o->side_bias, o->toggles_mean, o->dwell_s, o->dwell_spread,
-                o->rating_mean, o->rating_sd, o->rating_drop, o->view_s, o->answer_s);
+        char observer[RUN_JSON];
+        if (observer_json(&study->observer, observer, sizeof observer))
+            fprintf(out, ",\"observer\":%s", observer);
     }
     if (options->observer && study->observer.errors[0]) {
         fprintf(out, ",\"errors_file\":");
@@ -214,20 +210,6 @@ end:
     return done;
 }
 
-bool run_rows_conditions(struct run_rows *rows, char *error, size_t error_size)
-{
-    struct store_error why;
-    for (uint32_t i = 0; i < rows->plan->condition_count; i++) {
-        struct store_condition condition = {rows->plan->conditions[i].mode,
-                                            rows->plan->conditions[i].parameters};
-        if (store_add_condition(rows->store, &condition, &rows->ids.condition_ids[i], &why) != STORE_OK) {
-            snprintf(error, error_size, "%s", why.text);
-            return false;
-        }
-    }
-    return true;
-}
-
 bool run_rows_create(struct run_rows *rows, const struct run_options *options, const struct run_study *study,
                      const struct run_view *view, char *error, size_t error_size)
 {
@@ -276,6 +258,7 @@ bool run_rows_finish(struct run_rows *rows, char *error, size_t error_size)
     free(rows->attempts);
     free(rows->answers);
     free(rows->outcomes);
+    free(rows->adjusted);
     free(rows->repeats);
     return done;
 }

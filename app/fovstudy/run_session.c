@@ -58,14 +58,12 @@ bool run_find_errors(struct run *run, char *error, size_t error_size)
 {
     if (run->view.display)
         return true;
-    const char *specs[PROTOCOL_SCENES];
     const struct protocol *protocol = run->study.protocol;
     for (uint32_t i = 0; i < protocol->scene_count; i++)
-        specs[i] = study_scene_spec(run->options.scenes, run->options.scene_count, protocol->scenes[i]);
-    return run_rows_conditions(&run->rows, error, error_size) &&
-           run_rows_reference(&run->rows, &run->study, error, error_size) &&
-           errors_init(&run->errors, run->rows.plan, run->rows.store, run->rows.ids.condition_ids,
-                       run->rows.reference_id, specs, run->study.observer.errors, error, error_size);
+        run->specs[i] = study_scene_spec(run->options.scenes, run->options.scene_count, protocol->scenes[i]);
+    return run_rows_reference(&run->rows, &run->study, error, error_size) &&
+           errors_init(&run->errors, run->rows.plan, run->rows.store, run->rows.reference_id, run->specs,
+                       run->study.observer.errors, error, error_size);
 }
 
 bool run_open_gaze(struct run *run, int64_t segments, char *error, size_t error_size)
@@ -122,6 +120,11 @@ enum session_result run_go(struct run *run, const struct machine_start *start, c
     };
     signal(SIGPIPE, SIG_IGN); // a reader of the events that goes away is told in a sentence
     note_unblind(run);
+    struct store_error why;
+    if (options->observer && store_rehearse(run->rows.store, &why) != STORE_OK) {
+        snprintf(error, error_size, "%s", why.text);
+        return SESSION_FAILED;
+    }
     enum session_result result = session_run(&desc, error, error_size);
     // A renderer's sentence says more than that a frame failed.
     if (result == SESSION_FAILED && run->view.renderer_error[0])

@@ -14,6 +14,7 @@ struct run {
     struct run_rows rows;
     struct stage *stage;
     struct errors errors;
+    const char *specs[PROTOCOL_SCENES]; // what is shown for each scene, for the errors; borrowed
     struct event_lines lines;
 };
 

@@ -58,6 +58,7 @@ struct run_rows {
     bool *done;
     uint32_t *attempts, *answers, *repeats;
     int32_t *outcomes;
+    double (*adjusted)[PROTOCOL_ADJUSTED];
     uint32_t repeat_count, capacity;
     uint32_t done_count;
 };
@@ -74,8 +75,6 @@ struct store_segment run_rows_segment(struct run_rows *rows, const struct run_vi
 // A plan and room for its ids. False with a sentence.
 bool run_rows_plan(struct run_rows *rows, const struct protocol *protocol, uint64_t seed, int64_t number,
                    char *error, size_t error_size);
-// The ids of the plan's conditions, before there is a session: rows of their own where the file has none.
-bool run_rows_conditions(struct run_rows *rows, char *error, size_t error_size);
 bool run_rows_reference(struct run_rows *rows, const struct run_study *study, char *error, size_t error_size);
 // False with a sentence where logs were lost at the end.
 bool run_rows_finish(struct run_rows *rows, char *error, size_t error_size);

@@ -1,173 +1,149 @@
 #include "app/session/errors.h"
 
-#include "app/session/measure.h"
+#include "app/session/errors_table.h"
 #include "renderer/mode.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { LINE = 1024, ERRORS_FILE_LINES = 4096 };
-
-struct line {
-    char scene[64];
-    double error;
-    const struct mode *mode;
-    char parameters[PLAN_JSON];
-};
-
-struct table {
-    struct line *lines; // owned
-    size_t count;
-};
-
-static bool read_line(const char *file, int number, char *text, struct line *out, char *error,
-                      size_t error_size)
+static struct mode_choice choice_of(const struct plan *plan, uint32_t mode, const double *values)
 {
-    char why[256] = "";
-    struct mode_choice choice;
-    char *scene = text, *value = strchr(text, ','), *option = value ? strchr(value + 1, ',') : NULL,
-         *end = NULL;
-    if (!option) {
-        snprintf(error, error_size, "%s:%d: a line is SCENE,ERROR,MODE[:p=v,...]", file, number);
-        return false;
-    }
-    *value++ = *option++ = '\0';
-    out->error = strtod(value, &end);
-    if (end == value || *end || !(out->error >= 0.0) || !isfinite(out->error)) {
-        snprintf(error, error_size, "%s:%d: '%s' is no error; it is a number from 0 up", file, number, value);
-        return false;
-    }
-    if (!mode_parse(option, &choice, why, sizeof why)) {
-        snprintf(error, error_size, "%s:%d: %s", file, number, why);
-        return false;
-    }
-    if (strlen(scene) >= sizeof out->scene) {
-        snprintf(error, error_size, "%s:%d: the scene's name is longer than %zu bytes", file, number,
-                 sizeof out->scene - 1);
-        return false;
-    }
-    strcpy(out->scene, scene);
-    out->mode = choice.mode;
-    return mode_parameters_json(&choice, out->parameters, sizeof out->parameters);
+    struct mode_choice choice = {.mode = mode_find(plan->protocol->catalogue->modes[mode].name)};
+    for (uint32_t i = 0; choice.mode && i < choice.mode->parameter_count; i++)
+        choice.values[i] = values[i];
+    return choice;
 }
 
-static bool read_table(struct table *table, const char *path, char *error, size_t error_size)
+static struct mode_choice planned_choice(const struct plan *plan, int32_t condition)
 {
-    char text[LINE];
-    *table = (struct table){0};
-    if (!*path)
-        return true;
-    FILE *file = fopen(path, "r");
-    table->lines = calloc(ERRORS_FILE_LINES, sizeof *table->lines);
-    if (!file || !table->lines) {
-        snprintf(error, error_size, "the errors file '%s' cannot be read: %s", path, strerror(errno));
-        if (file)
-            fclose(file);
-        return false;
-    }
-    bool good = true;
-    for (int number = 1; good && fgets(text, sizeof text, file); number++) {
-        text[strcspn(text, "\r\n")] = '\0';
-        if (!*text || *text == '#')
-            continue;
-        if (table->count == ERRORS_FILE_LINES) {
-            snprintf(error, error_size, "%s:%d: more than %d lines", path, number, ERRORS_FILE_LINES);
-            good = false;
-        } else {
-            good = read_line(path, number, text, &table->lines[table->count], error, error_size);
-            table->count += good;
-        }
-    }
-    fclose(file);
-    return good;
+    return choice_of(plan, plan->conditions[condition].mode_index, plan->conditions[condition].values);
 }
 
-// Two parameter lists mean the same option; the plan's and the mode table's JSON may be spelt differently.
-static bool same_option(const struct plan_condition *condition, const struct line *line)
+// The parameters of the tested option that the trial's course sets.
+static uint32_t moving_parameters(const struct plan *plan, const struct plan_trial *trial, int slot,
+                                  uint32_t out[PROTOCOL_ADJUSTED])
 {
-    struct mode_choice choice = {.mode = line->mode};
-    char parameters[PLAN_JSON];
-    if (strcmp(condition->mode, line->mode->name) != 0)
-        return false;
-    for (uint32_t i = 0; i < line->mode->parameter_count; i++)
-        choice.values[i] = condition->values[i];
-    return mode_parameters_json(&choice, parameters, sizeof parameters) &&
-           strcmp(parameters, line->parameters) == 0;
+    const struct protocol_block *block = &plan->protocol->blocks[trial->block];
+    if (slot != (int)trial->test_slot)
+        return 0;
+    if (trial->kind == PROTOCOL_STAIRCASE)
+        out[0] = block->staircase.parameter;
+    for (uint32_t i = 0; trial->kind == PROTOCOL_ADJUST && i < block->adjust_count; i++)
+        out[i] = block->adjusts[i].parameter;
+    return trial->kind == PROTOCOL_STAIRCASE ? 1 : trial->kind == PROTOCOL_ADJUST ? block->adjust_count : 0;
 }
 
-static double from_table(const struct table *table, const struct plan_condition *condition, const char *scene)
+static struct errors_place place_of(const struct plan *plan, const struct plan_trial *trial,
+                                    const char *const *specs)
 {
-    for (size_t i = 0; i < table->count; i++)
-        if (strcmp(table->lines[i].scene, scene) == 0 && same_option(condition, &table->lines[i]))
-            return table->lines[i].error;
-    return NAN;
+    uint32_t i = 0;
+    while (strcmp(plan->protocol->scenes[i], trial->scene) != 0)
+        i++;
+    struct errors_place place = {.scene = trial->scene, .spec = specs[i]};
+    measure_metric(plan->protocol, trial->resolved, place.metric);
+    return place;
 }
 
-static bool find(const struct plan *plan, struct store *store, const struct store_error_key *key,
-                 int32_t condition, const char *scene, const struct table *table, double *out, char *error,
-                 size_t error_size)
+static bool missing(const struct plan *plan, const struct errors_place *place, int32_t condition,
+                    const char *what, char *error, size_t error_size)
 {
-    struct store_error why;
-    *out = NAN;
-    if (key->condition_id == key->reference_id)
-        *out = 0.0;
-    else if (store_get_measured_error(store, key, out, &why) != STORE_OK) {
-        snprintf(error, error_size, "%s", why.text);
-        return false;
-    }
-    if (isnan(*out))
-        *out = from_table(table, &plan->conditions[condition], scene);
-    if (!isnan(*out))
-        return true;
+    const char *settings = strchr(place->metric, ';');
     snprintf(error, error_size,
-             "the study file holds no measured error of %s %s on '%s'; run one session with --display headless "
-             "first, or "
-             "give --observer sim:errors=FILE",
-             plan->conditions[condition].mode, plan->conditions[condition].parameters, key->scene);
+             "the study file holds no measured error of %s %s on '%s%s'%s; run one session with --display "
+             "headless first, or give --observer sim:errors=FILE",
+             plan->conditions[condition].mode, plan->conditions[condition].parameters, place->spec,
+             settings ? settings : "", what);
     return false;
 }
 
-static uint32_t scene_of(const struct plan *plan, const char *scene)
+static bool enough_known(const struct errors *errors, const struct errors_place *place, int32_t condition,
+                         const uint32_t *parameters, uint32_t count, char *error, size_t error_size)
 {
-    uint32_t i = 0;
-    while (strcmp(plan->protocol->scenes[i], scene) != 0)
-        i++;
-    return i;
+    char what[256];
+    const struct mode_choice choice = planned_choice(errors->plan, condition);
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t known = 0;
+        errors_table_between(errors->table, place, &choice, parameters[i], 0.0, &known);
+        if (known >= 2)
+            continue;
+        snprintf(what, sizeof what,
+                 " at two values of '%s' (it has %u), which it takes to know those between them",
+                 choice.mode->parameters[parameters[i]].name, known);
+        return missing(errors->plan, place, condition, what, error, error_size);
+    }
+    return true;
 }
 
-bool errors_init(struct errors *errors, const struct plan *plan, struct store *store,
-                 const int64_t *condition_ids, int64_t reference_id, const char *const *specs, const char *file,
-                 char *error, size_t error_size)
+static bool find_slot(struct errors *errors, uint32_t index, int slot, int32_t reference,
+                      const struct errors_place *place, char *error, size_t error_size)
 {
-    struct table table = {0};
-    // Thousands of trials share a few options and scenes: each pair is looked up once. NAN: not yet.
-    size_t pairs = (size_t)plan->condition_count * plan->protocol->scene_count;
-    double *known = malloc((pairs + 1) * sizeof *known);
-    *errors = (struct errors){.plan = plan,
-                              .slots = calloc((size_t)plan->trial_count * 2 + 1, sizeof *errors->slots)};
-    bool good = known && errors->slots && read_table(&table, file, error, error_size);
-    for (size_t i = 0; good && i < pairs; i++)
-        known[i] = NAN;
-    for (size_t i = 0; good && i < 2 * (size_t)plan->trial_count; i++) {
-        const struct plan_trial *trial = &plan->trials[i / 2];
-        int32_t condition = trial->option[i % 2];
-        if (condition < 0)
-            continue;
-        uint32_t scene = scene_of(plan, trial->scene);
-        double *value = &known[(size_t)condition * plan->protocol->scene_count + scene];
-        struct store_error_key key = {.condition_id = condition_ids[condition],
-                                      .reference_id = reference_id,
-                                      .scene = specs[scene],
-                                      .metric = MEASURE_METRIC};
-        if (isnan(*value))
-            good = find(plan, store, &key, condition, trial->scene, &table, value, error, error_size);
-        errors->slots[i] = *value;
+    uint32_t moving[PROTOCOL_ADJUSTED];
+    const struct plan_trial *trial = &errors->plan->trials[index];
+    int32_t condition = trial->option[slot];
+    double *out = &errors->slots[2 * index + (uint32_t)slot];
+    *out = 0.0;
+    if (condition < 0)
+        return true;
+    uint32_t count = moving_parameters(errors->plan, trial, slot, moving);
+    if (count > 0) {
+        *out = (double)NAN;
+        return enough_known(errors, place, condition, moving, count, error, error_size);
     }
-    free(table.lines);
-    free(known);
+    if (condition == reference)
+        return true;
+    const struct mode_choice choice = planned_choice(errors->plan, condition);
+    *out = errors_table_find(errors->table, place, &choice);
+    return !isnan(*out) || missing(errors->plan, place, condition, "", error, error_size);
+}
+
+// The protocol's reference among the plan's conditions; -1: it is not shown.
+static int32_t reference_of(const struct plan *plan)
+{
+    const struct protocol_option *option = &plan->protocol->options[plan->protocol->reference];
+    for (uint32_t i = 0; i < plan->condition_count; i++)
+        if (plan->conditions[i].mode_index == option->mode &&
+            memcmp(plan->conditions[i].values, option->values, sizeof option->values) == 0)
+            return (int32_t)i;
+    return -1;
+}
+
+// An earlier trial that shows the same under the same settings, so that thousands of trials are looked up once.
+static uint32_t same_before(const struct plan *plan, uint32_t index)
+{
+    const struct plan_trial *trial = &plan->trials[index];
+    for (uint32_t i = index > 64 ? index - 64 : 0; i < index; i++) {
+        const struct plan_trial *other = &plan->trials[i];
+        if (other->resolved == trial->resolved && other->scene == trial->scene && other->kind == trial->kind &&
+            other->option[0] == trial->option[0] && other->option[1] == trial->option[1] &&
+            other->test_slot == trial->test_slot)
+            return i;
+    }
+    return index;
+}
+
+bool errors_init(struct errors *errors, const struct plan *plan, struct store *store, int64_t reference_id,
+                 const char *const *specs, const char *file, char *error, size_t error_size)
+{
+    *errors = (struct errors){.plan = plan,
+                              .specs = specs,
+                              .slots = calloc((size_t)plan->trial_count * 2 + 1, sizeof *errors->slots)};
+    snprintf(error, error_size, "out of memory");
+    if (errors->slots)
+        errors->table = errors_table_read(store, reference_id, file, error, error_size);
+    bool good = errors->table != NULL;
+    const int32_t reference = reference_of(plan);
+    for (uint32_t i = 0; good && i < plan->trial_count; i++) {
+        uint32_t same = same_before(plan, i);
+        if (same < i) {
+            memcpy(&errors->slots[2 * i], &errors->slots[2 * same], 2 * sizeof *errors->slots);
+            continue;
+        }
+        const struct errors_place place = place_of(plan, &plan->trials[i], specs);
+        for (int slot = 0; good && slot < 2; slot++)
+            good = find_slot(errors, i, slot, reference, &place, error, error_size);
+    }
     if (!good)
         errors_finish(errors);
     return good;
@@ -175,15 +151,44 @@ bool errors_init(struct errors *errors, const struct plan *plan, struct store *s
 
 void errors_finish(struct errors *errors)
 {
+    errors_table_destroy(errors->table);
     free(errors->slots);
+    errors->table = NULL;
     errors->slots = NULL;
 }
 
-struct observer_errors errors_of(const struct errors *errors, uint32_t trial)
+// The effects of several parameters add up: f(x, y) = f(x, y0) + f(x0, y) - f(x0, y0).
+static double moving_error(const struct errors *errors, const struct machine *machine,
+                           const struct plan_trial *trial, int slot)
 {
+    struct protocol_option option;
+    uint32_t moving[PROTOCOL_ADJUSTED];
+    uint32_t count = moving_parameters(errors->plan, trial, slot, moving);
+    const struct errors_place place = place_of(errors->plan, trial, errors->specs);
+    const struct mode_choice planned = planned_choice(errors->plan, trial->option[slot]);
+    double sum = 0.0, base = 0.0;
+    if (!machine_option(machine, (enum plan_slot)slot, &option))
+        return 0.0;
+    for (uint32_t i = 0; i < count; i++) {
+        sum += errors_table_between(errors->table, &place, &planned, moving[i], option.values[moving[i]], NULL);
+        if (count > 1)
+            base += errors_table_between(errors->table, &place, &planned, moving[i], planned.values[moving[i]],
+                                         NULL);
+    }
+    return fmax(0.0, sum - base * (count - 1) / count);
+}
+
+struct observer_errors errors_at(const struct errors *errors, const struct machine *machine)
+{
+    struct machine_view view;
     struct observer_errors of = {{0.0, 0.0}};
-    if (trial < errors->plan->trial_count)
-        for (int slot = 0; slot < 2; slot++)
-            of.slot[slot] = errors->slots[2 * trial + (uint32_t)slot];
+    machine_look(machine, &view);
+    if (!view.trial)
+        return of;
+    size_t index = (size_t)(view.trial - errors->plan->trials);
+    for (int slot = 0; slot < 2; slot++) {
+        double value = errors->slots[2 * index + (size_t)slot];
+        of.slot[slot] = isnan(value) ? moving_error(errors, machine, view.trial, slot) : value;
+    }
     return of;
 }

@@ -1,4 +1,5 @@
 #include "app/response/keyboard.h"
+#include "app/session/leap.h"
 #include "app/session/record.h"
 #include "app/session/session.h"
 #include "app/session/show.h"
@@ -33,7 +34,10 @@ struct loop {
     struct machine_record record; // taken from the machine and not yet stored
     bool has_record;
     int64_t notice_ns; // when "look at both" was asked for, -1: not
-    int64_t steps;     // of the clock without a display
+    struct leap leap;  // the clock without a display
+    int64_t steps;     // its frames
+    bool busy;         // records came with this one
+    uint64_t checks;   // of the store, each so many frames
     enum machine_screen told_screen;
     uint32_t told_trial;
     char *error;
@@ -77,7 +81,7 @@ static int64_t now_ns(struct loop *loop)
 {
     const struct session_desc *desc = loop->desc;
     if (!desc->display)
-        return (int64_t)llround((double)loop->steps * 1e9 / desc->step_hz);
+        return leap_time_ns(&loop->leap, loop->steps);
     int64_t back_ns = 0;
     int64_t now = steady_clock_take(&loop->clock, display_now_ns(desc->display) - desc->origin_ns, &back_ns);
     if (back_ns > 0) {
@@ -129,8 +133,8 @@ static void take_observer(struct loop *loop, int64_t now)
     struct machine_event event;
     machine_look(loop->machine, &view);
     for (;;) {
-        struct observer_errors errors = loop->desc->display ? show_errors(&loop->show, view.trial_index)
-                                                            : errors_of(loop->desc->errors, view.trial_index);
+        struct observer_errors errors = loop->desc->display ? show_errors(&loop->show, &view, &loop->recorder)
+                                                            : errors_at(loop->desc->errors, loop->machine);
         if (!observer_next(&loop->observer, now, &view, &errors, &at_ns, &event))
             return;
         machine_event(loop->machine, at_ns, &event);
@@ -174,7 +178,7 @@ static bool take_record(struct loop *loop, bool *out_failed)
     *out_failed = result == RECORDER_FAILED;
     bool waits = result == RECORDER_WAIT ||
                  (result == RECORDER_DONE && record->kind == MACHINE_TRIAL_DONE && loop->desc->display &&
-                  !show_store_errors(&loop->show, record->trial, loop->error, loop->error_size));
+                  !show_store_errors(&loop->show, loop->error, loop->error_size));
     if (waits)
         trouble_tell(&loop->trouble, real_ns(), loop->error);
     if (waits || *out_failed)
@@ -194,6 +198,7 @@ static bool take_records(struct loop *loop)
             loop->has_record = machine_next_record(loop->machine, &loop->record);
             if (!loop->has_record)
                 return true;
+            loop->busy = true;
             follow_record(loop, &loop->record);
         }
         if (!take_record(loop, &failed))
@@ -254,16 +259,19 @@ static bool prepare(struct loop *loop)
     struct machine_view view;
     machine_look(loop->machine, &view);
     bool soon = view.screen == MACHINE_INSTRUCTIONS || view.screen == MACHINE_READY ||
-                view.screen == MACHINE_REST || view.screen == MACHINE_STIMULUS;
+                view.screen == MACHINE_REST || view.screen == MACHINE_BREAK || view.screen == MACHINE_STIMULUS;
     if (!loop->desc->stage || !view.trial || !soon)
         return true;
-    return stage_prepare(loop->desc->stage, view.trial_index, loop->error, loop->error_size);
+    return stage_prepare(loop->desc->stage, loop->machine, view.trial, loop->error, loop->error_size);
 }
 
 static bool present(struct loop *loop, const struct machine_view *view, int64_t now)
 {
     if (!loop->desc->display) {
-        loop->steps++;
+        bool busy = loop->busy || loop->trouble.on;
+        loop->steps = leap_next(&loop->leap, loop->steps, loop->machine, view, &loop->observer, busy);
+        loop->checks++;
+        loop->busy = false;
         return true;
     }
     loop->state.selected = keyboard_selected(&loop->keyboard, view);
@@ -305,7 +313,7 @@ static bool advance(struct loop *loop, struct machine_view *out_view)
     machine_frame(loop->machine, now, out_view);
     if (!loop->trouble.on && !take_records(loop))
         return false;
-    uint64_t count = desc->display ? loop->show.number : (uint64_t)loop->steps;
+    uint64_t count = desc->display ? loop->show.number : loop->checks;
     if (!simulated_clock(loop) || count % STORE_CHECK_FRAMES == 0)
         check_store(loop);
     if (loop->trouble.on) {
@@ -389,6 +397,7 @@ enum session_result session_run(const struct session_desc *desc, char *error, si
                      .device = desc->observer ? "observer" : "keyboard"},
         .state = {.going_to = PLAN_SLOT_NONE},
         .trouble = {.say = desc->say, .user = desc->say_user},
+        .leap = {.step_hz = desc->step_hz},
         .notice_ns = -1,
         .told_screen = MACHINE_END,
         .error = error,

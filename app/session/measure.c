@@ -3,32 +3,57 @@
 #include "analysis/image/error.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 // An option's history settles within a few frames; early ones are seen too, so both count. At least three come
 // from an option that was on screen for six full frames.
 enum { FIRST_STEP = 2, FIRST_COUNT = 3, LATER_STEP = 8 };
 
+struct cell {
+    struct measure_key key;
+    struct image_error_sum sum;
+    bool changed;
+};
+
 struct measure {
-    uint32_t scene_count, width, height;
-    struct image_error_sum *sums; // [condition][scene]
-    uint8_t *shown, *wanted;      // one eye's pixels each
-    uint32_t trial, attempt;      // of the counts
+    uint32_t width, height;
+    struct cell *cells; // owned
+    size_t count, capacity;
+    uint8_t *shown, *wanted; // one eye's pixels each
+    uint32_t trial, attempt; // of the counts
+    int64_t conditions[2];   // that they count
     uint64_t full_frames[2];
 };
 
-struct measure *measure_create(uint32_t condition_count, uint32_t scene_count, uint32_t width, uint32_t height)
+void measure_metric(const struct protocol *protocol, const struct protocol_settings *settings,
+                    char out[MEASURE_METRIC])
+{
+    const struct catalogue *catalogue = protocol->catalogue;
+    int used = snprintf(out, MEASURE_METRIC, "wrmse");
+    for (uint32_t i = 0; i < catalogue->setting_count; i++) {
+        const struct catalogue_parameter *setting = &catalogue->settings[i];
+        double value = settings->render[i];
+        if (value == setting->fallback || used < 0 || used >= MEASURE_METRIC)
+            continue;
+        size_t left = (size_t)(MEASURE_METRIC - used);
+        used += setting->choices
+                    ? snprintf(out + used, left, ";%s=%s", setting->name, setting->choices[(size_t)value])
+                    : snprintf(out + used, left, ";%s=%.9g", setting->name, value);
+    }
+}
+
+struct measure *measure_create(uint32_t width, uint32_t height)
 {
     struct measure *measure = calloc(1, sizeof *measure);
     if (!measure)
         return NULL;
     size_t bytes = (size_t)width * height * 4;
-    *measure =
-        (struct measure){.scene_count = scene_count, .width = width, .height = height, .trial = UINT32_MAX};
-    measure->sums = calloc((size_t)condition_count * scene_count, sizeof *measure->sums);
+    *measure = (struct measure){.width = width, .height = height, .trial = UINT32_MAX};
     measure->shown = malloc(bytes);
     measure->wanted = malloc(bytes);
-    if (!measure->sums || !measure->shown || !measure->wanted) {
+    if (!measure->shown || !measure->wanted) {
         measure_destroy(measure);
         return NULL;
     }
@@ -39,20 +64,53 @@ void measure_destroy(struct measure *measure)
 {
     if (!measure)
         return;
-    free(measure->sums);
+    free(measure->cells);
     free(measure->shown);
     free(measure->wanted);
     free(measure);
 }
 
-bool measure_due(struct measure *measure, const struct machine_view *view)
+static struct cell *find(const struct measure *measure, const struct measure_key *key)
+{
+    for (size_t i = 0; i < measure->count; i++) {
+        struct cell *cell = &measure->cells[i];
+        if (cell->key.condition_id == key->condition_id && cell->key.scene == key->scene &&
+            strcmp(cell->key.metric, key->metric) == 0)
+            return cell;
+    }
+    return NULL;
+}
+
+static struct cell *find_or_add(struct measure *measure, const struct measure_key *key)
+{
+    struct cell *cell = find(measure, key);
+    if (cell)
+        return cell;
+    if (measure->count == measure->capacity) {
+        size_t capacity = measure->capacity ? 2 * measure->capacity : 64;
+        struct cell *cells = realloc(measure->cells, capacity * sizeof *cells);
+        if (!cells)
+            return NULL;
+        measure->cells = cells;
+        measure->capacity = capacity;
+    }
+    cell = &measure->cells[measure->count++];
+    *cell = (struct cell){.key = *key};
+    return cell;
+}
+
+bool measure_due(struct measure *measure, const struct machine_view *view, int64_t condition_id)
 {
     if (view->slot == PLAN_SLOT_NONE || view->fade > 0.0)
         return false;
-    if (measure->trial != view->trial_index || measure->attempt != view->attempt) {
+    if (view->trial_index != measure->trial || view->attempt != measure->attempt) {
         measure->trial = view->trial_index;
         measure->attempt = view->attempt;
         measure->full_frames[0] = measure->full_frames[1] = 0;
+    }
+    if (measure->conditions[view->slot] != condition_id) {
+        measure->conditions[view->slot] = condition_id; // an adjusted value begins anew
+        measure->full_frames[view->slot] = 0;
     }
     uint64_t count = ++measure->full_frames[view->slot];
     if (count <= FIRST_STEP * FIRST_COUNT)
@@ -80,21 +138,48 @@ static bool add_eye(struct measure *measure, struct image_error_sum *sum, int ey
     return image_error_add(sum, &test, &truth, &view);
 }
 
-bool measure_take(struct measure *measure, uint32_t condition, uint32_t scene, struct renderer_option *option,
+bool measure_take(struct measure *measure, const struct measure_key *key, struct renderer_option *option,
                   struct renderer_option *reference, const struct frame *frame)
 {
     struct frame_stats stats;
-    struct image_error_sum *sum = &measure->sums[(size_t)condition * measure->scene_count + scene];
-    if (!renderer_draw(reference, frame, &stats))
+    struct cell *cell = find_or_add(measure, key);
+    if (!cell || !renderer_draw(reference, frame, &stats))
         return false;
     for (int eye = 0; eye < EYES; eye++)
-        if (!add_eye(measure, sum, eye, option, reference, frame))
+        if (!add_eye(measure, &cell->sum, eye, option, reference, frame))
             return false;
+    cell->changed = true;
     return true;
 }
 
-double measure_error(const struct measure *measure, uint32_t condition, uint32_t scene)
+static double cell_error(const struct cell *cell)
 {
-    return image_error_result(&measure->sums[(size_t)condition * measure->scene_count + scene]).weighted_rmse /
-           255.0;
+    return image_error_result(&cell->sum).weighted_rmse / 255.0;
+}
+
+double measure_error(const struct measure *measure, const struct measure_key *key)
+{
+    const struct cell *cell = find(measure, key);
+    return cell ? cell_error(cell) : (double)NAN;
+}
+
+bool measure_next_changed(struct measure *measure, struct measure_key *out_key, double *out_error)
+{
+    for (size_t i = 0; i < measure->count; i++) {
+        struct cell *cell = &measure->cells[i];
+        if (!cell->changed)
+            continue;
+        cell->changed = false;
+        *out_key = cell->key;
+        *out_error = cell_error(cell);
+        return true;
+    }
+    return false;
+}
+
+void measure_not_stored(struct measure *measure, const struct measure_key *key)
+{
+    struct cell *cell = find(measure, key);
+    if (cell)
+        cell->changed = true;
 }

@@ -59,29 +59,48 @@ static const struct plan_trial *trial_of(const struct recorder *recorder, const 
     return machine_trial(recorder->machine, record->trial);
 }
 
+static enum store_result add_option(struct recorder *recorder, const struct plan_trial *trial,
+                                    const struct protocol_option *option, int64_t *out_id,
+                                    struct store_error *why)
+{
+    const struct protocol *protocol = recorder->plan->protocol;
+    char parameters[PLAN_JSON];
+    if (!protocol_option_json(protocol, option, parameters, sizeof parameters)) {
+        snprintf(why->text, sizeof why->text, "the parameters of trial %" PRIu32 " are too long",
+                 trial->ordinal);
+        return STORE_REFUSED;
+    }
+    struct store_condition row = {protocol->catalogue->modes[option->mode].name, parameters};
+    return store_add_condition(recorder->store, &row, out_id, why);
+}
+
 // A staircase's option is known now; the row gets it.
 static enum store_result set_level(struct recorder *recorder, const struct machine_record *record,
                                    struct store_error *why)
 {
     const struct plan_trial *trial = trial_of(recorder, record);
-    const struct protocol *protocol = recorder->plan->protocol;
-    char parameters[PLAN_JSON];
     int64_t condition = 0;
     if (isnan(record->level))
         return STORE_OK;
     struct protocol_option option = plan_level_option(recorder->plan, trial, record->level);
-    if (!protocol_option_json(protocol, &option, parameters, sizeof parameters)) {
-        snprintf(why->text, sizeof why->text, "the parameters of trial %" PRIu32 " are too long",
-                 trial->ordinal);
-        return STORE_REFUSED;
-    }
-    struct store_condition row = {protocol->catalogue->modes[option.mode].name, parameters};
-    enum store_result result = store_add_condition(recorder->store, &row, &condition, why);
+    enum store_result result = add_option(recorder, trial, &option, &condition, why);
     if (result == STORE_OK)
         result = store_set_trial_option(recorder->store, recorder->trial_ids[record->trial],
                                         stored_slot(trial->test_slot), condition, why);
     recorder->level_condition = condition;
     return result;
+}
+
+// What was set is an option of its own, which later ratings are about.
+static enum store_result keep_adjusted(struct recorder *recorder, const struct machine_record *record,
+                                       struct store_error *why)
+{
+    struct protocol_option option;
+    const struct plan_trial *trial = trial_of(recorder, record);
+    if (record->number_count == 0 || record->ends_trial ||
+        !machine_option(recorder->machine, trial->test_slot, &option))
+        return STORE_OK;
+    return add_option(recorder, trial, &option, &recorder->level_condition, why);
 }
 
 static enum store_result start_trial(struct recorder *recorder, const struct machine_record *record,
@@ -91,6 +110,8 @@ static enum store_result start_trial(struct recorder *recorder, const struct mac
     int64_t id = recorder->trial_ids[record->trial], attempt = 0;
     recorder->level_condition = 0;
     enum store_result result = set_level(recorder, record, why);
+    if (result == STORE_OK && record->number_count > 0)
+        result = keep_adjusted(recorder, record, why);
     if (result == STORE_OK)
         result =
             store_start_trial(recorder->store, id, recorder->ids->segment_id, record->at_ns, &attempt, why);
@@ -231,10 +252,12 @@ static enum store_result store_answer(struct recorder *recorder, const struct ma
     const char *table = record->kind == MACHINE_CHOICE   ? "choice"
                         : record->kind == MACHINE_RATING ? "rating"
                                                          : "response";
-    enum store_result result = record->kind == MACHINE_CHOICE ? store_choice_row(recorder, record, &row, why)
-                               : record->kind == MACHINE_RATING
-                                   ? store_rating_row(recorder, record, &row, why)
-                                   : store_response_rows(recorder, record, &row, why);
+    enum store_result result = keep_adjusted(recorder, record, why);
+    if (result != STORE_OK)
+        return result;
+    result = record->kind == MACHINE_CHOICE   ? store_choice_row(recorder, record, &row, why)
+             : record->kind == MACHINE_RATING ? store_rating_row(recorder, record, &row, why)
+                                              : store_response_rows(recorder, record, &row, why);
     char value[32];
     if (result != STORE_OK)
         return result;

@@ -14,8 +14,7 @@ bool show_init(struct show *show, const struct session_desc *desc)
     overlay_init(&show->overlay, desc->renderer, &view);
     if (!desc->observer)
         return true;
-    show->measure = measure_create(desc->plan->condition_count, (uint32_t)desc->scene_count,
-                                   desc->display->width, desc->display->height);
+    show->measure = measure_create(desc->display->width, desc->display->height);
     return show->measure != NULL;
 }
 
@@ -25,81 +24,85 @@ void show_finish(struct show *show)
     show->measure = NULL;
 }
 
-static uint32_t scene_index(const struct show *show, uint32_t trial)
+static uint32_t scene_index(const struct show *show, const struct plan_trial *trial)
 {
-    const char *name = show->desc->plan->trials[trial].scene;
     uint32_t i = 0;
-    while (i < show->desc->scene_count && strcmp(show->desc->scenes[i].name, name) != 0)
+    while (i < show->desc->scene_count && strcmp(show->desc->scenes[i].name, trial->scene) != 0)
         i++;
     return i;
 }
 
-static double option_error(const struct show *show, uint32_t trial, int slot)
+// The condition of the values that the participant has set, a row of its own: only simulated ones ask for it,
+// since it waits for the disk. 0: it could not be written, and is asked for again.
+static int64_t adjusted_condition(struct show *show, const struct protocol_option *option)
 {
-    const struct plan *plan = show->desc->plan;
-    int32_t condition = plan->trials[trial].option[slot];
-    if (condition < 0 || show->desc->ids->condition_ids[condition] == show->desc->reference_id)
-        return 0.0;
-    return measure_error(show->measure, (uint32_t)condition, scene_index(show, trial));
+    struct store_error why;
+    char parameters[PLAN_JSON];
+    const struct protocol *protocol = show->desc->plan->protocol;
+    struct store_condition row = {protocol->catalogue->modes[option->mode].name, parameters};
+    if (show->adjusted_id && memcmp(&show->adjusted, option, sizeof *option) == 0)
+        return show->adjusted_id;
+    show->adjusted = *option;
+    show->adjusted_id = 0;
+    if (protocol_option_json(protocol, option, parameters, sizeof parameters))
+        store_add_condition(show->desc->store, &row, &show->adjusted_id, &why);
+    return show->adjusted_id;
 }
 
-struct observer_errors show_errors(const struct show *show, uint32_t trial)
+// What is measured in a slot of the running trial. False: nothing, since it is empty or shows the reference.
+static bool measured_key(struct show *show, const struct machine_view *view, const struct recorder *recorder,
+                         enum plan_slot slot, struct measure_key *out)
 {
+    struct protocol_option option;
+    const struct plan_trial *trial = view->trial;
+    *out = (struct measure_key){.condition_id = recorder_condition(recorder, trial, slot),
+                                .scene = scene_index(show, trial)};
+    if (trial->kind == PROTOCOL_ADJUST && slot == trial->test_slot &&
+        machine_option(recorder->machine, slot, &option))
+        out->condition_id = adjusted_condition(show, &option);
+    measure_metric(show->desc->plan->protocol, trial->resolved, out->metric);
+    return out->condition_id && out->condition_id != show->desc->reference_id;
+}
+
+struct observer_errors show_errors(struct show *show, const struct machine_view *view,
+                                   const struct recorder *recorder)
+{
+    struct measure_key key;
     struct observer_errors errors = {{0.0, 0.0}};
-    if (show->measure && trial < show->desc->plan->trial_count) {
-        for (int slot = 0; slot < 2; slot++) {
-            double error = option_error(show, trial, slot);
-            errors.slot[slot] = isnan(error) ? 0.0 : error;
-        }
+    if (!show->measure || (view->screen != MACHINE_STIMULUS && view->screen != MACHINE_QUESTION))
+        return errors;
+    for (int slot = 0; slot < 2; slot++) {
+        double error = measured_key(show, view, recorder, (enum plan_slot)slot, &key)
+                           ? measure_error(show->measure, &key)
+                           : 0.0;
+        errors.slot[slot] = isnan(error) ? 0.0 : error;
     }
     return errors;
 }
 
-static bool store_error_of(const struct show *show, uint32_t condition, const char *scene, double value,
-                           char *error, size_t error_size)
+bool show_store_errors(struct show *show, char *error, size_t error_size)
 {
-    struct store_error why;
-    struct store_error_key key = {.condition_id = show->desc->ids->condition_ids[condition],
-                                  .reference_id = show->desc->reference_id,
-                                  .scene = scene,
-                                  .metric = MEASURE_METRIC};
-    if (store_set_measured_error(show->desc->store, &key, value, &why) == STORE_OK)
-        return true;
-    snprintf(error, error_size, "%s", why.text);
-    return false;
-}
-
-bool show_store_errors(const struct show *show, uint32_t trial, char *error, size_t error_size)
-{
-    const struct plan_trial *planned = &show->desc->plan->trials[trial];
-    for (int slot = 0; show->measure && slot < 2; slot++) {
-        double value = option_error(show, trial, slot);
-        if (planned->option[slot] >= 0 && !isnan(value) &&
-            !store_error_of(show, (uint32_t)planned->option[slot],
-                            show->desc->scenes[scene_index(show, trial)].spec, value, error, error_size))
-            return false;
+    struct measure_key measured;
+    double value;
+    while (show->measure && measure_next_changed(show->measure, &measured, &value)) {
+        struct store_error why;
+        const struct store_error_key key = {.condition_id = measured.condition_id,
+                                            .reference_id = show->desc->reference_id,
+                                            .scene = show->desc->scenes[measured.scene].spec,
+                                            .metric = measured.metric};
+        if (store_set_measured_error(show->desc->store, &key, value, &why) == STORE_OK)
+            continue;
+        measure_not_stored(show->measure, &measured);
+        snprintf(error, error_size, "%s", why.text);
+        return false;
     }
     return true;
 }
 
 bool show_measure_rest(struct show *show, char *error, size_t error_size)
 {
-    const struct session_desc *desc = show->desc;
-    for (uint32_t scene = 0; show->measure && scene < desc->scene_count; scene++) {
-        for (uint32_t condition = 0; condition < desc->plan->condition_count; condition++) {
-            double value = 0.0;
-            if (!isnan(measure_error(show->measure, condition, scene)))
-                continue;
-            if (desc->ids->condition_ids[condition] != desc->reference_id) {
-                if (!probe(desc, show->measure, condition, scene, error, error_size))
-                    return false;
-                value = measure_error(show->measure, condition, scene);
-            }
-            if (!store_error_of(show, condition, desc->scenes[scene].spec, value, error, error_size))
-                return false;
-        }
-    }
-    return true;
+    return !show->measure || (probe_rest(show->desc, show->measure, error, error_size) &&
+                              show_store_errors(show, error, error_size));
 }
 
 // Which directions the fovea takes, and where they came from.
@@ -163,10 +166,10 @@ static bool draw_option(struct show *show, const struct machine_view *view, cons
         return false;
     }
     int64_t condition_id = recorder_condition(recorder, view->trial, view->slot);
-    bool is_reference = condition_id == show->desc->reference_id;
-    if (show->measure && !is_reference && measure_due(show->measure, view) &&
-        !measure_take(show->measure, (uint32_t)view->condition, scene_index(show, view->trial_index), option,
-                      stage_reference(show->desc->stage), &frame)) {
+    struct measure_key key;
+    if (show->measure && measured_key(show, view, recorder, view->slot, &key) &&
+        measure_due(show->measure, view, key.condition_id) &&
+        !measure_take(show->measure, &key, option, stage_reference(show->desc->stage), &frame)) {
         snprintf(error, error_size, "the image error of frame %llu could not be measured",
                  (unsigned long long)show->number);
         return false;

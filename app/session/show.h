@@ -10,10 +10,12 @@
 struct show {
     const struct session_desc *desc;
     struct overlay overlay;
-    struct measure *measure; // NULL: errors are not measured
-    uint64_t number;         // of the next frame
-    int64_t last_present_ns; // -1: none
-    bool gaze_lost;          // at the last frame that was drawn
+    struct measure *measure;         // NULL: errors are not measured
+    uint64_t number;                 // of the next frame
+    int64_t last_present_ns;         // -1: none
+    bool gaze_lost;                  // at the last frame that was drawn
+    struct protocol_option adjusted; // the latest that errors were asked of
+    int64_t adjusted_id;             // its condition, 0: none
 };
 
 // False: out of memory.
@@ -25,12 +27,13 @@ bool show_frame(struct show *show, const struct machine_view *view, const struct
                 const struct fovea *fovea, const struct recorder *recorder, int64_t start_ns, char *error,
                 size_t error_size);
 
-// What the measured frames say about a trial's options; 0 where nothing was measured.
-struct observer_errors show_errors(const struct show *show, uint32_t trial);
-// Writes the errors of a trial's options into the store.
-bool show_store_errors(const struct show *show, uint32_t trial, char *error, size_t error_size);
-// Measures and stores what this participant did not see: each condition of the plan on each other scene, since
-// those who answer without frames may get it there.
+// What the measured frames say about the options of the running trial, as they are now: a staircase's level,
+// adjusted values. 0 where nothing was measured.
+struct observer_errors show_errors(struct show *show, const struct machine_view *view,
+                                   const struct recorder *recorder);
+// Writes the errors that were measured since it was last called into the store.
+bool show_store_errors(struct show *show, char *error, size_t error_size);
+// Measures and stores what this participant did not see, since those who answer without frames may get it.
 bool show_measure_rest(struct show *show, char *error, size_t error_size);
 
 #endif

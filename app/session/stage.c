@@ -5,14 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { NO_TRIAL = -1 };
-
 struct stage {
     struct stage_desc desc;
     struct mode_choice reference_choice; // desc.reference points here, where there is one
-    int64_t trial;                       // prepared, or NO_TRIAL
+    const struct plan_trial *trial;      // prepared; NULL: none
     struct stage_scene *scene;
     struct renderer_option *options[2];
+    struct mode_choice choices[2]; // of the options; mode NULL: none
     struct renderer_option *reference;
     uint64_t uses;
 };
@@ -27,7 +26,6 @@ struct stage *stage_create(const struct stage_desc *desc)
         stage->reference_choice = *desc->reference;
         stage->desc.reference = &stage->reference_choice;
     }
-    stage->trial = NO_TRIAL;
     return stage;
 }
 
@@ -36,10 +34,11 @@ static void clear_options(struct stage *stage)
     for (int slot = 0; slot < 2; slot++) {
         renderer_option_destroy(stage->options[slot]);
         stage->options[slot] = NULL;
+        stage->choices[slot] = (struct mode_choice){0};
     }
     renderer_option_destroy(stage->reference);
     stage->reference = NULL;
-    stage->trial = NO_TRIAL;
+    stage->trial = NULL;
 }
 
 static void evict(struct stage_scene *scene)
@@ -109,17 +108,31 @@ static struct renderer_settings render_settings(const struct stage *stage,
                                       .taa = is_on(settings, stage->desc.taa_setting)};
 }
 
-static bool make_option(struct stage *stage, int slot, uint32_t condition,
+static struct mode_choice choice_of(const struct stage *stage, const struct protocol_option *option)
+{
+    const struct catalogue *catalogue = stage->desc.plan->protocol->catalogue;
+    struct mode_choice choice = {.mode = mode_find(catalogue->modes[option->mode].name)};
+    for (uint32_t i = 0; choice.mode && i < choice.mode->parameter_count; i++)
+        choice.values[i] = option->values[i];
+    return choice;
+}
+
+// Nothing where the slot shows that already; what it showed before makes room.
+static bool make_option(struct stage *stage, int slot, const struct protocol_option *option,
                         const struct renderer_settings *settings, char *error, size_t error_size)
 {
-    struct mode_choice choice;
-    if (stage_choice(&stage->desc.plan->conditions[condition], &choice))
-        stage->options[slot] =
-            renderer_option_create(stage->desc.renderer, stage->scene->resident, &choice, settings);
+    struct mode_choice choice = choice_of(stage, option);
+    if (stage->options[slot] && memcmp(&choice, &stage->choices[slot], sizeof choice) == 0)
+        return true;
+    renderer_option_destroy(stage->options[slot]);
+    stage->options[slot] =
+        choice.mode ? renderer_option_create(stage->desc.renderer, stage->scene->resident, &choice, settings)
+                    : NULL;
+    stage->choices[slot] = choice;
     if (stage->options[slot])
         return true;
     snprintf(error, error_size, "the mode '%s' cannot be set up on this device for the scene '%s'",
-             stage->desc.plan->conditions[condition].mode, stage->scene->name);
+             choice.mode ? choice.mode->name : "?", stage->scene->name);
     return false;
 }
 
@@ -147,43 +160,34 @@ static bool enter_scene(struct stage *stage, struct stage_scene *scene, const ch
     return false;
 }
 
-bool stage_prepare(struct stage *stage, uint32_t trial, char *error, size_t error_size)
+bool stage_prepare(struct stage *stage, const struct machine *machine, const struct plan_trial *trial,
+                   char *error, size_t error_size)
 {
-    const struct plan_trial *planned = &stage->desc.plan->trials[trial];
-    if (stage->trial == (int64_t)trial)
-        return true;
-    const struct renderer_settings settings = render_settings(stage, planned->resolved);
-    bool done = enter_scene(stage, find_scene(stage, planned->scene), planned->scene, error, error_size);
+    struct protocol_option option;
+    const struct renderer_settings settings = render_settings(stage, trial->resolved);
+    bool ready = stage->trial == trial, done = true;
+    if (!ready)
+        done = enter_scene(stage, find_scene(stage, trial->scene), trial->scene, error, error_size);
     for (int slot = 0; done && slot < 2; slot++)
-        if (planned->option[slot] >= 0)
-            done = make_option(stage, slot, (uint32_t)planned->option[slot], &settings, error, error_size);
-    done = done && make_reference(stage, &settings, error, error_size);
+        if (machine_option(machine, (enum plan_slot)slot, &option))
+            done = make_option(stage, slot, &option, &settings, error, error_size);
+    done = done && (ready || make_reference(stage, &settings, error, error_size));
     if (done)
-        stage->trial = (int64_t)trial;
+        stage->trial = trial;
     else
         clear_options(stage);
     return done;
 }
 
-// Those of the first trial that shows the condition; as in any trial that does, where all agree.
-static struct renderer_settings settings_of_condition(const struct stage *stage, uint32_t condition)
+bool stage_prepare_option(struct stage *stage, const struct protocol_option *option,
+                          const struct protocol_settings *settings, size_t scene, char *error,
+                          size_t error_size)
 {
-    const struct plan *plan = stage->desc.plan;
-    for (uint32_t i = 0; i < plan->trial_count; i++)
-        for (int slot = 0; slot < 2; slot++)
-            if (plan->trials[i].option[slot] == (int32_t)condition)
-                return render_settings(stage, plan->trials[i].resolved);
-    return (struct renderer_settings){0};
-}
-
-bool stage_prepare_condition(struct stage *stage, uint32_t condition, size_t scene, char *error,
-                             size_t error_size)
-{
-    const struct renderer_settings settings = settings_of_condition(stage, condition);
+    const struct renderer_settings rendered = render_settings(stage, settings);
     struct stage_scene *wanted = &stage->desc.scenes[scene];
     bool done = enter_scene(stage, wanted, wanted->name, error, error_size) &&
-                make_option(stage, PLAN_SLOT_A, condition, &settings, error, error_size) &&
-                make_reference(stage, &settings, error, error_size);
+                make_option(stage, PLAN_SLOT_A, option, &rendered, error, error_size) &&
+                make_reference(stage, &rendered, error, error_size);
     if (!done)
         clear_options(stage);
     return done;

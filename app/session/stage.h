@@ -1,8 +1,8 @@
 // What a trial shows: its scene on the GPU and its two options, made ready before the trial starts.
 //
-// Use: stage_create -> stage_prepare while the trial before it rests -> stage_option, stage_frame per frame
-//      -> stage_destroy before the renderer. Each scene is uploaded once and stays while there is room.
-// Does not: decide what is shown, present frames, keep time.
+// Use: stage_create -> stage_prepare while the trial before it rests, and as long as it runs, since adjusted
+// values change -> stage_option, stage_frame per frame -> stage_destroy before the renderer. Each scene is
+// uploaded once and stays while there is room. Does not: decide what is shown, present frames, keep time.
 #ifndef APP_SESSION_STAGE_H
 #define APP_SESSION_STAGE_H
 
@@ -40,11 +40,13 @@ struct stage;
 struct stage *stage_create(const struct stage_desc *desc); // NULL: out of memory
 void stage_destroy(struct stage *stage);                   // NULL is fine
 
-// The options of a trial; nothing where they are ready already. False with a sentence.
-bool stage_prepare(struct stage *stage, uint32_t trial, char *error, size_t error_size);
-// One condition of the plan on one scene, in slot a, with the reference: for measuring outside trials.
-bool stage_prepare_condition(struct stage *stage, uint32_t condition, size_t scene, char *error,
-                             size_t error_size);
+// The options of the running or next trial; nothing where they are ready already. False with a sentence.
+bool stage_prepare(struct stage *stage, const struct machine *machine, const struct plan_trial *trial,
+                   char *error, size_t error_size);
+// One option on one scene, in slot a, with the reference: for measuring outside trials.
+bool stage_prepare_option(struct stage *stage, const struct protocol_option *option,
+                          const struct protocol_settings *settings, size_t scene, char *error,
+                          size_t error_size);
 struct renderer_option *stage_option(struct stage *stage, enum plan_slot slot); // NULL: none
 struct renderer_option *stage_reference(struct stage *stage);                   // NULL: none
 

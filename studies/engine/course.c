@@ -74,13 +74,16 @@ static bool grow(struct machine *machine, uint32_t places)
     machine->attempts = attempts ? attempts : machine->attempts;
     uint32_t *answers = realloc(machine->answers, capacity * sizeof *answers);
     machine->answers = answers ? answers : machine->answers;
+    double(*answered)[PROTOCOL_ADJUSTED] = realloc(machine->answered, capacity * sizeof *answered);
+    machine->answered = answered ? answered : machine->answered;
     uint32_t *repeats = realloc(machine->repeats, capacity * sizeof *repeats);
     machine->repeats = repeats ? repeats : machine->repeats;
-    if (!done || !attempts || !answers || !repeats)
+    if (!done || !attempts || !answers || !answered || !repeats)
         return false;
     for (uint32_t i = machine->capacity; i < capacity; i++) {
         done[i] = false;
         attempts[i] = answers[i] = repeats[i] = 0;
+        memset(answered[i], 0, sizeof answered[i]);
     }
     machine->capacity = capacity;
     return true;
@@ -125,6 +128,8 @@ bool course_create(struct machine *machine, const struct machine_start *start)
         machine->done[i] = start->done && start->done[i];
         machine->attempts[i] = start->attempts ? start->attempts[i] : 0;
         machine->answers[i] = start->answers ? start->answers[i] : 0;
+        if (start->adjusted)
+            memcpy(machine->answered[i], start->adjusted[i], sizeof machine->answered[i]);
     }
     for (uint32_t i = 0; i < start->repeat_count; i++)
         machine->repeats[i] = start->repeats[i];
@@ -143,6 +148,7 @@ void course_destroy(struct machine *machine)
         staircase_destroy(machine->staircases[i].staircase);
     free(machine->staircases);
     free(machine->repeats);
+    free(machine->answered);
     free(machine->answers);
     free(machine->attempts);
     free(machine->done);
@@ -158,14 +164,25 @@ uint32_t course_next(const struct machine *machine)
     return place;
 }
 
+double course_level(const struct machine *machine, uint32_t place)
+{
+    bool running = machine->screen == MACHINE_STIMULUS || machine->screen == MACHINE_QUESTION ||
+                   machine->screen == MACHINE_STORING;
+    if (running && place == machine->trial)
+        return machine->level; // an answer has moved its staircase on
+    const struct course_staircase *staircase = staircase_of(machine, machine_trial(machine, place));
+    return staircase ? staircase_level(staircase->staircase) : (double)NAN;
+}
+
 void course_begin(struct machine *machine)
 {
     const struct plan_trial *trial = machine_running(machine);
-    const struct course_staircase *staircase = staircase_of(machine, trial);
+    machine->level = course_level(machine, machine->trial);
     machine->screen = MACHINE_STIMULUS;
-    machine->level = staircase ? staircase_level(staircase->staircase) : NAN;
     machine->adjusting = 0;
-    memcpy(machine->adjusted, trial->adjust_start, sizeof machine->adjusted);
+    bool answered = trial->kind == PROTOCOL_ADJUST && machine->answers[machine->trial] > 0;
+    memcpy(machine->adjusted, answered ? machine->answered[machine->trial] : trial->adjust_start,
+           sizeof machine->adjusted);
     stimulus_begin(machine);
 }
 
@@ -308,6 +325,7 @@ void course_answer(struct machine *machine, enum machine_record_kind kind, int32
     if (kind == MACHINE_RESPONSES && !ask.question) {
         record->number_count = machine_block(machine)->adjust_count;
         memcpy(record->numbers, machine->adjusted, sizeof record->numbers);
+        memcpy(machine->answered[machine->trial], machine->adjusted, sizeof machine->adjusted);
     }
     step_staircase(machine, record);
     machine->last_value = value;

@@ -95,19 +95,25 @@ bool machine_may_go_on(const struct machine *machine)
     return machine->now_ns - machine->since_ns >= machine_rest_ns(machine);
 }
 
-// Answers have a time; who is too late gets the trial again.
-static bool is_late(const struct machine *machine)
+// Answers have a time; who is too late gets the trial again. INT64_MAX: there is none now.
+static int64_t deadline_ns(const struct machine *machine)
 {
     int64_t deadline = machine_running(machine)->resolved->deadline_ns;
     if (deadline <= 0 || machine->answers[machine->trial] > 0)
-        return false;
+        return INT64_MAX;
     if (machine->screen == MACHINE_QUESTION)
-        return machine->now_ns - machine->asked_ns > deadline;
+        return machine->asked_ns + deadline;
     bool answers_here = machine_running(machine)->kind == PROTOCOL_TOGGLE ||
                         machine_running(machine)->kind == PROTOCOL_STAIRCASE ||
                         machine_running(machine)->kind == PROTOCOL_ADJUST;
-    return machine->screen == MACHINE_STIMULUS && answers_here && machine->stimulus.full_ns >= 0 &&
-           stimulus_reaction(machine, machine->now_ns) > deadline;
+    if (machine->screen != MACHINE_STIMULUS || !answers_here || machine->stimulus.full_ns < 0)
+        return INT64_MAX;
+    return machine->stimulus.full_ns + machine->stimulus.paused_full_ns + deadline;
+}
+
+static bool is_late(const struct machine *machine)
+{
+    return machine->now_ns > deadline_ns(machine);
 }
 
 // What passes with time alone.
@@ -131,6 +137,27 @@ static void advance(struct machine *machine)
     if (machine->screen == MACHINE_REST &&
         machine_running(machine)->resolved->advance == PROTOCOL_ADVANCE_AUTO && machine_may_go_on(machine))
         course_begin(machine);
+}
+
+int64_t machine_next_ns(const struct machine *machine)
+{
+    if (machine->paused || machine->asking || machine->trial >= course_places(machine))
+        return INT64_MAX;
+    int64_t late = deadline_ns(machine), next = INT64_MAX;
+    if (machine->screen == MACHINE_STIMULUS)
+        next = stimulus_next_ns(machine);
+    else if (machine->screen == MACHINE_STORING)
+        next = INT64_MIN;
+    else if (machine->screen == MACHINE_CONFIRMATION)
+        next = machine->since_ns + machine_running(machine)->resolved->confirm_ns;
+    else if (machine->screen == MACHINE_REST || machine->screen == MACHINE_BREAK)
+        next = machine->since_ns + machine_rest_ns(machine);
+    bool waits_for_key =
+        machine->screen == MACHINE_BREAK || machine_running(machine)->resolved->advance == PROTOCOL_ADVANCE_KEY;
+    if ((machine->screen == MACHINE_REST || machine->screen == MACHINE_BREAK) && waits_for_key &&
+        machine_may_go_on(machine))
+        next = INT64_MAX;
+    return late < INT64_MAX && late + 1 < next ? late + 1 : next;
 }
 
 static void tick(struct machine *machine, int64_t now_ns)
@@ -186,7 +213,8 @@ static void stimulus_event(struct machine *machine, const struct machine_event *
                 record->slot = (enum plan_slot)event->value;
         }
     } else if ((event->kind == MACHINE_ADJUST || event->kind == MACHINE_ADJUST_NEXT) &&
-               trial->kind == PROTOCOL_ADJUST && !machine->stimulus.starting) {
+               trial->kind == PROTOCOL_ADJUST && machine->answers[machine->trial] == 0 &&
+               !machine->stimulus.starting) {
         adjust(machine, event);
     } else if (event->kind == MACHINE_START && view.may_go_on) {
         stimulus_close_exposure(machine);

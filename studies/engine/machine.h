@@ -83,8 +83,9 @@ struct machine_view {
     int64_t stimulus_ns;    // time on the trial's camera path: since its first frame, paused time taken out
     int64_t wait_ns;        // REST, BREAK: until START is taken
     double level;           // of a staircase's parameter in this trial; NaN: none
-    const double *adjusted; // values of block.adjusts; NULL: not an adjust trial
+    const double *adjusted; // values of block.adjusts; NULL: none can be set
     uint32_t adjusting;     // which one the keys change
+    uint32_t adjust_count;  // how many there are
     const char *text;       // consent, instructions or question text to show; NULL where the screen has none
     const struct protocol_question *question; // of QUESTION and of a toggle trial; else NULL
     enum plan_slot subject;                   // QUESTION: the option asked about; NONE: what was shown, or both
@@ -135,7 +136,7 @@ struct machine_record {
     uint32_t toggles;    // of this attempt, ignored ones not counted
     bool has_step;
     struct staircase_step step;
-    // trial started, adjusted, responses of an adjustment
+    // trial started (number_count: its values are an answer already), adjusted, responses of an adjustment
     double level;       // NaN: no staircase
     uint32_t parameter; // index into block.adjusts
     double numbers[PROTOCOL_ADJUSTED];
@@ -155,7 +156,8 @@ struct machine_start {
     const uint32_t *attempts; // attempts each trial already had; NULL: none
     const uint32_t *answers;  // answers each trial already has; NULL: none
     const int32_t *outcomes;  // of staircase trials, -1: no answer; NULL: none
-    const uint32_t *repeats;  // trials that come after the plan: which each repeats
+    const double (*adjusted)[PROTOCOL_ADJUSTED]; // that adjust trials have as an answer; NULL: none
+    const uint32_t *repeats;                     // trials that come after the plan: which each repeats
     uint32_t repeat_count;
 };
 
@@ -169,6 +171,12 @@ void machine_frame(struct machine *machine, int64_t now_ns, struct machine_view 
 // The view as the last frame left it, without a new one; screen and trial already follow later events.
 void machine_look(const struct machine *machine, struct machine_view *out_view);
 bool machine_next_record(struct machine *machine, struct machine_record *out_record); // false: none waits
+// When something passes by time alone: at the first frame at or after it. INT64_MIN: at the next frame, as
+// within a fade; INT64_MAX: never, it waits for an event. Frames before it look as the last one did.
+int64_t machine_next_ns(const struct machine *machine);
+// What a slot of the running or next trial shows, a staircase's level and adjusted values in place. False:
+// nothing.
+bool machine_option(const struct machine *machine, enum plan_slot slot, struct protocol_option *out);
 // The plan's trial at a place counted on over repetitions.
 const struct plan_trial *machine_trial(const struct machine *machine, uint32_t place);
 // A trial's answers in their order: question and subject of each; false: no more.

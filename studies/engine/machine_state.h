@@ -45,7 +45,8 @@ struct machine {
     // one per place
     bool *done;
     uint32_t *attempts, *answers;
-    uint32_t *repeats; // the plan's trial at each place after the plan's
+    double (*answered)[PROTOCOL_ADJUSTED]; // adjusted values that are an answer
+    uint32_t *repeats;                     // the plan's trial at each place after the plan's
     uint32_t repeat_count, capacity;
     struct course_staircase *staircases;
     uint32_t staircase_count;
@@ -84,6 +85,8 @@ bool course_create(struct machine *machine, const struct machine_start *start);
 void course_destroy(struct machine *machine);
 uint32_t course_next(const struct machine *machine); // the first place that is not done; course_places: none
 void course_begin(struct machine *machine);          // the trial at machine.trial
+// What a staircase shows at a place: of the running trial its level, else that of the next one. NaN: none.
+double course_level(const struct machine *machine, uint32_t place);
 // Towards the first trial that is left: its block's beginning where that is new, a break where one is due, else
 // REST.
 void course_go_on(struct machine *machine, enum machine_screen same_block);
@@ -101,5 +104,7 @@ void stimulus_resume(struct machine *machine, int64_t paused_ns);
 int64_t stimulus_reaction(const struct machine *machine, int64_t now_ns);
 bool stimulus_seen(const struct machine *machine);                      // all options, each long enough
 bool stimulus_timed_out(const struct machine *machine, int64_t now_ns); // its time is over
+// When time alone changes what is shown, as machine_next_ns.
+int64_t stimulus_next_ns(const struct machine *machine);
 
 #endif

@@ -17,7 +17,8 @@ enum purpose {
     PURPOSE_DWELL,
     PURPOSE_CHOICE,
     PURPOSE_RATING,
-    PURPOSE_ADJUST
+    PURPOSE_ADJUST,
+    PURPOSE_LATE
 };
 
 enum { OBSERVER_ADJUSTMENTS = 40 };
@@ -46,6 +47,7 @@ static const struct knob {
     {KNOB(answer_s), 0.05, 600, 1},
     {KNOB(equal_band), 0, 20, 0.7}, // ours: "equal" in a third of looks at no difference
     {KNOB(count_error), 0, 100, 0.5},
+    {KNOB(late), 0, 0.9, 0}, // of a trial that comes again as well, so that some attempt is in time
 #undef KNOB
 };
 
@@ -110,6 +112,20 @@ static bool parse_pair(char *pair, struct observer_parameters *out, char *error,
     return false;
 }
 
+bool observer_json(const struct observer_parameters *parameters, char *out, size_t out_size)
+{
+    size_t used = 0;
+    for (size_t i = 0; i < KNOBS; i++) {
+        struct observer_parameters copy = *parameters;
+        int wrote = snprintf(out + used, out_size - used, "%s\"%s\":%.17g", i ? "," : "{", knobs[i].name,
+                             *knob_value(&copy, &knobs[i]));
+        if (wrote < 0 || (size_t)wrote >= out_size - used)
+            return false;
+        used += (size_t)wrote;
+    }
+    return snprintf(out + used, out_size - used, "}") < (int)(out_size - used);
+}
+
 bool observer_parse(const char *spec, struct observer_parameters *out, char *error, size_t error_size)
 {
     observer_defaults(out);
@@ -119,7 +135,7 @@ bool observer_parse(const char *spec, struct observer_parameters *out, char *err
         snprintf(error, error_size, "observer '%.60s' is not known; it is sim or sim:name=value,...", spec);
         return false;
     }
-    char copy[1024];
+    char copy[2048];
     if (strlen(spec + 4) >= sizeof copy) {
         snprintf(error, error_size, "observer: more than %d characters; shorten it", (int)sizeof copy - 1);
         return false;
@@ -170,10 +186,33 @@ static void arm(struct observer *observer, int64_t due_ns, enum machine_event_ki
 // Times to answer a screen vary little.
 #define OBSERVER_ANSWER_SPREAD 0.25
 
-static void arm_screen(struct observer *observer, int64_t now_ns, enum machine_event_kind kind)
+#define OBSERVER_HURRY 0.8          // share of a deadline after which it answers
+#define OBSERVER_LATE_NS 1000000000 // that a missed deadline lies behind, so that a slow frame notes it too
+
+static int64_t answer_ns(const struct observer *observer)
 {
     struct random_stream stream = random_stream(observer->key, PURPOSE_WAIT, observer->events, 0);
-    arm(observer, now_ns + wait_ns(&stream, observer->parameters.answer_s, OBSERVER_ANSWER_SPREAD), kind);
+    return wait_ns(&stream, observer->parameters.answer_s, OBSERVER_ANSWER_SPREAD);
+}
+
+static void arm_screen(struct observer *observer, int64_t now_ns, enum machine_event_kind kind)
+{
+    arm(observer, now_ns + answer_ns(observer), kind);
+}
+
+// Only a trial's first answer has a deadline, and only where the stimulus did not have it.
+static void arm_question(struct observer *observer, int64_t now_ns, const struct machine_view *view)
+{
+    const struct plan_trial *trial = view->trial;
+    int64_t wait = answer_ns(observer), deadline = trial ? trial->resolved->deadline_ns : 0;
+    bool first = observer->questions++ == 0 && trial &&
+                 (!protocol_kind_is_pair(trial->kind) || trial->kind == PROTOCOL_SEQUENTIAL);
+    if (first && deadline > 0 && observer->late)
+        wait += deadline + OBSERVER_LATE_NS;
+    else if (first && deadline > 0 && (double)wait > OBSERVER_HURRY * (double)deadline)
+        wait = (int64_t)(OBSERVER_HURRY * (double)deadline);
+    arm(observer, now_ns + wait,
+        view->question && view->question->type == PROTOCOL_ASK_CHOICE ? MACHINE_CHOOSE : MACHINE_RATE);
 }
 
 // Toggles before the choice: the mean, up to two more or less.
@@ -186,25 +225,44 @@ static uint32_t plan_toggles(const struct observer *observer)
     return mean - reach + random_below(&stream, 2 * reach + 1);
 }
 
+// The next switch, or the answer where none is planned or the time runs out.
+static void arm_pair(struct observer *observer, int64_t now_ns, const struct machine_view *view)
+{
+    const struct observer_parameters *p = &observer->parameters;
+    const struct protocol_settings *settings = view->trial->resolved;
+    struct random_stream stream = trial_stream(observer, PURPOSE_DWELL, observer->step);
+    enum machine_event_kind last = view->question ? MACHINE_CHOOSE : MACHINE_START;
+    int64_t wait = wait_ns(&stream, p->dwell_s, p->dwell_spread);
+    if (observer->step == 0 && settings->deadline_ns > 0)
+        observer->hurry_ns = now_ns + (int64_t)(OBSERVER_HURRY * (double)settings->deadline_ns);
+    bool hurries = now_ns + wait > observer->hurry_ns;
+    bool answers = hurries || observer->step >= observer->toggles_planned;
+    if (answers && observer->late && settings->deadline_ns > 0)
+        wait += settings->deadline_ns + OBSERVER_LATE_NS;
+    else if (hurries) {
+        int64_t left = observer->hurry_ns > now_ns ? observer->hurry_ns - now_ns : 0;
+        left = left > settings->min_exposure_ns ? left : settings->min_exposure_ns;
+        wait = wait < left ? wait : left;
+    }
+    arm(observer, now_ns + wait, answers ? last : MACHINE_TOGGLE_KEY);
+    observer->step++;
+}
+
 static void arm_stimulus(struct observer *observer, int64_t now_ns, const struct machine_view *view)
 {
     if (view->fade > 0 || view->slot == PLAN_SLOT_NONE || view->slot == observer->looking || !view->trial)
         return; // nothing new to look at yet
     observer->looking = view->slot;
-    struct random_stream stream = trial_stream(observer, PURPOSE_DWELL, observer->step);
-    enum machine_event_kind last = view->question ? MACHINE_CHOOSE : MACHINE_START;
-    if (view->trial->kind == PROTOCOL_SEQUENTIAL)
+    bool pair = protocol_kind_is_pair(view->trial->kind);
+    if (view->trial->kind == PROTOCOL_SEQUENTIAL || (!pair && view->trial->resolved->view_ns > 0))
         return; // it goes by itself
-    if (!protocol_kind_is_pair(view->trial->kind) && view->trial->resolved->view_ns > 0)
+    if (pair) {
+        arm_pair(observer, now_ns, view);
         return;
-    if (!protocol_kind_is_pair(view->trial->kind))
-        arm(observer, now_ns + wait_ns(&stream, observer->parameters.view_s, OBSERVER_ANSWER_SPREAD),
-            MACHINE_START);
-    else
-        arm(observer,
-            now_ns + wait_ns(&stream, observer->parameters.dwell_s, observer->parameters.dwell_spread),
-            observer->step < observer->toggles_planned ? MACHINE_TOGGLE_KEY : last);
-    observer->step++;
+    }
+    struct random_stream stream = trial_stream(observer, PURPOSE_DWELL, observer->step++);
+    arm(observer, now_ns + wait_ns(&stream, observer->parameters.view_s, OBSERVER_ANSWER_SPREAD),
+        MACHINE_START);
 }
 
 static void arm_any(struct observer *observer, int64_t now_ns, const struct machine_view *view)
@@ -224,9 +282,7 @@ static void arm_any(struct observer *observer, int64_t now_ns, const struct mach
         arm_screen(observer, now_ns, MACHINE_START);
         break;
     case MACHINE_QUESTION:
-        arm_screen(observer, now_ns,
-                   view->question && view->question->type == PROTOCOL_ASK_CHOICE ? MACHINE_CHOOSE
-                                                                                 : MACHINE_RATE);
+        arm_question(observer, now_ns, view);
         break;
     case MACHINE_ABORT:
         arm_screen(observer, now_ns, MACHINE_NO);
@@ -297,21 +353,36 @@ static int32_t rate(const struct observer *observer, const struct observer_error
                                           : (int32_t)latent;
 }
 
-// A step of the parameter in place of the end, as long as steps help.
-static bool adjust(struct observer *observer, const struct observer_errors *errors, struct machine_event *out)
+// A step of a parameter in place of the end, as long as steps help: the first direction is a guess, a step that
+// makes it worse turns it, the second turn goes back to the best and on to the next parameter.
+static bool adjust(struct observer *observer, const struct machine_view *view,
+                   const struct observer_errors *errors, struct machine_event *out)
 {
     double difference = fabs(errors->slot[1] - errors->slot[0]);
-    if (!(difference > observer->parameters.threshold / 3) ||
-        observer->step > observer->toggles_planned + OBSERVER_ADJUSTMENTS)
+    bool settled = observer->turns >= 2, more = view->adjusting + 1 < view->adjust_count;
+    if (!(difference > observer->parameters.threshold / 3) || observer->due_ns >= observer->hurry_ns ||
+        observer->step > observer->toggles_planned + OBSERVER_ADJUSTMENTS || (settled && !more))
         return false;
+    if (view->slot != view->trial->test_slot) {
+        out->kind = MACHINE_TOGGLE_KEY; // the steps can be seen there
+        return true;
+    }
+    observer->looking = PLAN_SLOT_NONE; // looks again
+    if (settled) {
+        observer->turns = 0;
+        observer->direction = 0;
+        *out = (struct machine_event){MACHINE_ADJUST_NEXT, 1};
+        return true;
+    }
     struct random_stream stream = trial_stream(observer, PURPOSE_ADJUST, observer->step);
     if (observer->direction == 0)
         observer->direction = random_below(&stream, 2) ? 1 : -1;
-    else if (difference > observer->last_difference)
+    else if (difference > observer->last_difference) {
         observer->direction = -observer->direction;
+        observer->turns++;
+    }
     observer->last_difference = difference;
     *out = (struct machine_event){MACHINE_ADJUST, observer->direction};
-    observer->looking = PLAN_SLOT_NONE; // looks again
     return true;
 }
 
@@ -325,8 +396,9 @@ static void decide(struct observer *observer, const struct machine_view *view,
         out->value = choose(observer, errors, view->question && view->question->equal);
     else if (out->kind == MACHINE_RATE)
         out->value = view->question ? rate(observer, errors, view) : 0;
-    else if (out->kind == MACHINE_START && view->adjusted && !adjust(observer, errors, out) && !view->may_go_on)
-        out->kind = MACHINE_TOGGLE_KEY;
+    else if (out->kind == MACHINE_START && view->screen == MACHINE_STIMULUS &&
+             !(view->adjusted && adjust(observer, view, errors, out)) && !view->may_go_on)
+        out->kind = MACHINE_TOGGLE_KEY; // START would be lost, and the trial would wait for ever
     if (out->kind == MACHINE_TOGGLE_KEY || out->kind == MACHINE_START)
         out->value = 0;
 }
@@ -345,7 +417,11 @@ bool observer_next(struct observer *observer, int64_t now_ns, const struct machi
         observer->attempt = view->attempt;
         observer->step = 0;
         observer->direction = 0;
+        observer->turns = observer->questions = 0;
+        observer->hurry_ns = INT64_MAX;
         observer->toggles_planned = plan_toggles(observer);
+        struct random_stream stream = trial_stream(observer, PURPOSE_LATE, 0);
+        observer->late = random_unit(&stream) < observer->parameters.late;
     }
     if (!observer->armed)
         arm_any(observer, now_ns, view);

@@ -2,7 +2,8 @@
 //
 // It looks, toggles with log-normal dwell times, chooses by a psychometric function of the options' image
 // errors, rates by a latent normal with criteria. Every draw is Philox keyed by (seed, participant number,
-// trial, purpose): the same session gives the same events. Use, before each machine_frame:
+// trial, purpose): the same session gives the same events. Where answers have a deadline it hurries, and misses
+// it in a share `late` of the attempts. Use, before each machine_frame:
 //     while (observer_next(o, now_ns, &view, &errors, &at_ns, &event)) { machine_event(m, at_ns, &event);
 //                                                                        machine_look(m, &view); }
 // Does not: read a clock, measure errors, answer MACHINE_STORING (the caller's store does).
@@ -36,12 +37,15 @@ struct observer_parameters {
     double answer_s;            // median time to answer a screen
     double equal_band;          // where "equal" is an answer: logits around no difference that give it
     double count_error;         // sd of a count, in things counted
+    double late;                // share of attempts in which a deadline is missed
     char errors[OBSERVER_PATH]; // the file of errors the caller reads; "" where not given
 };
 
 void observer_defaults(struct observer_parameters *out);
 // "sim" or "sim:lapse=0.1,errors=FILE"; false with a sentence. A file name may not contain a comma.
 bool observer_parse(const char *spec, struct observer_parameters *out, char *error, size_t error_size);
+// All but `errors` as a JSON object, numbers with every digit. False: too small.
+bool observer_json(const struct observer_parameters *parameters, char *out, size_t out_size);
 
 // Image error of each slot's option against the reference; larger is more visible. A rating reads its
 // subject's, of the scene [0].
@@ -62,7 +66,11 @@ struct observer {
     enum plan_slot looking; // the option it has already dwelt on; NONE before the first
     double last_difference; // of an adjustment
     int32_t direction;
-    uint32_t events; // sent so far
+    uint32_t turns;     // of its direction
+    bool late;          // misses this attempt's deadline
+    int64_t hurry_ns;   // answers from here on, INT64_MAX: no deadline
+    uint32_t questions; // that this attempt was asked
+    uint32_t events;    // sent so far
 };
 
 void observer_start(struct observer *observer, const struct observer_parameters *parameters, uint64_t seed,

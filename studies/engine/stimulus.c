@@ -122,7 +122,9 @@ void stimulus_frame(struct machine *machine, int64_t now_ns)
     if (s->starting) {
         s->starting = false;
         s->start_ns = s->fade_ns = now_ns;
-        machine_push(machine, MACHINE_TRIAL_STARTED, now_ns);
+        struct machine_record *record = machine_push(machine, MACHINE_TRIAL_STARTED, now_ns);
+        if (record && trial->kind == PROTOCOL_ADJUST && machine->answers[machine->trial] > 0)
+            record->number_count = machine_block(machine)->adjust_count;
     }
     if (s->fade_ns == STIMULUS_NOT_YET)
         s->fade_ns = now_ns; // the first frame after a pause
@@ -175,6 +177,20 @@ void stimulus_resume(struct machine *machine, int64_t paused_ns)
 int64_t stimulus_reaction(const struct machine *machine, int64_t now_ns)
 {
     return now_ns - machine->stimulus.full_ns - machine->stimulus.paused_full_ns;
+}
+
+int64_t stimulus_next_ns(const struct machine *machine)
+{
+    const struct stimulus *s = &machine->stimulus;
+    const struct plan_trial *trial = machine_running(machine);
+    const struct protocol_settings *settings = trial->resolved;
+    bool timed =
+        trial->kind == PROTOCOL_SEQUENTIAL || (!protocol_kind_is_pair(trial->kind) && settings->view_ns > 0);
+    if (s->fade == FADE_GAP && !s->starting && !s->shown)
+        return s->fade_ns + settings->gap_ns;
+    if (s->starting || s->fade != FADE_NONE || s->fade_ns == STIMULUS_NOT_YET || s->full_ns < 0)
+        return INT64_MIN;
+    return timed ? s->full_ns + s->paused_full_ns + settings->view_ns : INT64_MAX;
 }
 
 bool stimulus_seen(const struct machine *machine)

@@ -2,6 +2,7 @@
 #include "studies/engine/machine_state.h"
 
 #include <math.h>
+#include <string.h>
 
 const char *machine_screen_name(enum machine_screen screen)
 {
@@ -77,7 +78,9 @@ static void look_at_stimulus(const struct machine *machine, const struct plan_tr
     out->may_choose = stimulus_seen(machine);
     out->stimulus_ns = s->camera_ns;
     out->level = machine->level;
-    out->adjusted = trial->kind == PROTOCOL_ADJUST ? machine->adjusted : NULL;
+    bool adjusts = trial->kind == PROTOCOL_ADJUST && machine->answers[machine->trial] == 0;
+    out->adjusted = adjusts ? machine->adjusted : NULL;
+    out->adjust_count = machine_block(machine)->adjust_count;
     out->adjusting = machine->adjusting;
     // A choice between two that can be switched is made while looking at them.
     bool chooses = trial->kind == PROTOCOL_TOGGLE || trial->kind == PROTOCOL_STAIRCASE;
@@ -87,11 +90,45 @@ static void look_at_stimulus(const struct machine *machine, const struct plan_tr
     out->may_go_on = leads_on(machine, trial, out->question);
 }
 
+// The place of the running or next trial; course_places: none is left.
+static uint32_t place_ahead(const struct machine *machine)
+{
+    return machine->shown_block == UINT32_MAX ? course_next(machine) : machine->trial;
+}
+
+bool machine_option(const struct machine *machine, enum plan_slot slot, struct protocol_option *out)
+{
+    uint32_t place = place_ahead(machine);
+    const struct plan *plan = machine->plan;
+    if (slot == PLAN_SLOT_NONE || place >= course_places(machine))
+        return false;
+    const struct plan_trial *trial = machine_trial(machine, place);
+    if (trial->option[slot] < 0)
+        return false;
+    const struct plan_condition *condition = &plan->conditions[trial->option[slot]];
+    *out = (struct protocol_option){.mode = condition->mode_index};
+    memcpy(out->values, condition->values, sizeof out->values);
+    if (slot != trial->test_slot)
+        return true;
+    double level = course_level(machine, place);
+    if (!isnan(level))
+        *out = plan_level_option(plan, trial, level);
+    const struct protocol_block *block = &plan->protocol->blocks[trial->block];
+    const bool begun = machine->screen == MACHINE_STIMULUS || machine->screen == MACHINE_QUESTION ||
+                       machine->screen == MACHINE_STORING;
+    const double *values = begun                          ? machine->adjusted
+                           : machine->answers[place] == 0 ? trial->adjust_start
+                                                          : machine->answered[place];
+    for (uint32_t i = 0; trial->kind == PROTOCOL_ADJUST && i < block->adjust_count; i++)
+        out->values[block->adjusts[i].parameter] = plan_level(values[i]);
+    return true;
+}
+
 void machine_look(const struct machine *machine, struct machine_view *out_view)
 {
     enum machine_screen screen = top_screen(machine);
     uint32_t places = course_places(machine);
-    uint32_t next = machine->shown_block == UINT32_MAX ? course_next(machine) : machine->trial;
+    uint32_t next = place_ahead(machine);
     const struct plan_trial *trial = next < places ? machine_trial(machine, next) : NULL;
     *out_view = (struct machine_view){.screen = screen,
                                       .phase = MACHINE_PHASE_REST,

@@ -183,22 +183,6 @@ enum store_result store_set_measured_error(struct store *store, const struct sto
     return sql_end(store, result, error);
 }
 
-enum store_result store_get_measured_error(struct store *store, const struct store_error_key *key,
-                                           double *out_value, struct store_error *error)
-{
-    const struct sql_value values[] = {sql_id(key->condition_id), sql_id(key->reference_id),
-                                       sql_text(key->scene), sql_text(key->metric)};
-    struct sql_value value = {0};
-    bool found = false;
-    sql_say(error, "%s", "");
-    pthread_mutex_lock(&store->mutex);
-    enum store_result result =
-        sql_get(store, SQL_GET_MEASURED_ERROR, values, countof(values), &value, 1, &found, error);
-    pthread_mutex_unlock(&store->mutex);
-    *out_value = result == STORE_OK && found ? value.real : NAN;
-    return result;
-}
-
 enum store_result store_add_event(struct store *store, const struct store_event *event, int64_t *out_id,
                                   struct store_error *error)
 {

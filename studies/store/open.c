@@ -316,6 +316,25 @@ void store_set_busy(struct store *store, uint32_t busy_ms)
     pthread_mutex_unlock(&store->mutex);
 }
 
+enum store_result store_rehearse(struct store *store, struct store_error *error)
+{
+    static const char people[] = "SELECT 1 FROM participant WHERE kind = 'person' LIMIT 1";
+    sqlite3_stmt *statement = NULL;
+    sql_say(error, "%s", "");
+    pthread_mutex_lock(&store->mutex);
+    int code = sqlite3_prepare_v2(store->db, people, -1, &statement, NULL);
+    if (code == SQLITE_OK)
+        code = sqlite3_step(statement);
+    enum store_result result =
+        code == SQLITE_ROW || code == SQLITE_DONE ? STORE_OK : sql_failure(store, code, error);
+    sqlite3_finalize(statement);
+    // In WAL mode: the log is synchronised at checkpoints only.
+    if (code == SQLITE_DONE)
+        result = sql_execute(store, "PRAGMA synchronous = NORMAL", error);
+    pthread_mutex_unlock(&store->mutex);
+    return result;
+}
+
 enum store_result store_check(struct store *store, struct store_error *error)
 {
     static const char *const checks[] = {

@@ -36,7 +36,9 @@ static const char planned_query[] =
     "b.parameters, (SELECT count(*) FROM choice AS c WHERE c.trial_id = t.id), "
     "(SELECT count(*) FROM rating AS r WHERE r.trial_id = t.id), "
     "(SELECT count(*) FROM response AS r WHERE r.trial_id = t.id), "
-    "coalesce((SELECT outcome FROM staircase_step AS s WHERE s.trial_id = t.id), -1) FROM trial AS t LEFT JOIN "
+    "coalesce((SELECT outcome FROM staircase_step AS s WHERE s.trial_id = t.id), -1), "
+    "(SELECT group_concat(printf('%!.17g', value), ' ') FROM "
+    "(SELECT value FROM response AS r WHERE r.trial_id = t.id ORDER BY id)) FROM trial AS t LEFT JOIN "
     "condition AS a ON a.id = t.option_a "
     "LEFT JOIN condition AS b ON b.id = t.option_b WHERE t.session_id = ?1 ORDER BY t.ordinal";
 
@@ -175,6 +177,7 @@ static struct store_planned planned_row(sqlite3_stmt *row)
         .ratings = sqlite3_column_int64(row, 21),
         .responses = sqlite3_column_int64(row, 22),
         .outcome = sqlite3_column_int64(row, 23),
+        .values = text(row, 24),
     };
 }
 

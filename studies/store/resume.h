@@ -46,6 +46,7 @@ struct store_planned {
     uint64_t seed;
     int64_t choices, ratings, responses; // rows of answers
     int64_t outcome;                     // of its staircase step, -1: none
+    const char *values;                  // of the responses in their order, with a space between them
 };
 
 // False stops the reading.

@@ -78,8 +78,6 @@ const char *const sql_statements[SQL_STATEMENTS] = {
                                "VALUES (?1, ?2, ?3, ?4, ?5) "
                                "ON CONFLICT (condition_id, reference_id, scene, metric) "
                                "DO UPDATE SET value = excluded.value",
-    [SQL_GET_MEASURED_ERROR] = "SELECT value FROM measured_error WHERE condition_id = ?1 AND reference_id = ?2 "
-                               "AND scene = ?3 AND metric = ?4",
 
     [SQL_LAST_GAZE] = "SELECT coalesce(max(id), 0) FROM gaze",
     [SQL_INSERT_GAZE] =

@@ -36,7 +36,6 @@ enum sql_statement {
     SQL_INSERT_GAZE_CHECK,
     SQL_INSERT_EXCLUSION,
     SQL_SET_MEASURED_ERROR,
-    SQL_GET_MEASURED_ERROR,
     // rows.c
     SQL_LAST_GAZE,
     SQL_INSERT_GAZE,

@@ -85,6 +85,11 @@ enum store_result store_close(struct store *store, struct store_error *error);
 // From now on a write waits at most this long for another program's: a running session must not stand still.
 void store_set_busy(struct store *store, uint32_t busy_ms);
 
+// For simulated participants: from now on a commit no longer waits until it is on disk. A program that ends
+// however it ends still loses nothing; a power cut loses the last commits, whole ones, and damages nothing. A
+// file that holds a person is left as it is.
+enum store_result store_rehearse(struct store *store, struct store_error *error);
+
 // Reads the whole file: SQLite's integrity_check and foreign_key_check. Minutes for gigabytes.
 enum store_result store_check(struct store *store, struct store_error *error);
 
@@ -279,9 +284,16 @@ enum store_result store_add_exclusion(struct store *store, const struct store_ex
 // Replaces an earlier value of the same key.
 enum store_result store_set_measured_error(struct store *store, const struct store_error_key *key, double value,
                                            struct store_error *error);
-// out_value is NaN where nothing was measured; that is STORE_OK.
-enum store_result store_get_measured_error(struct store *store, const struct store_error_key *key,
-                                           double *out_value, struct store_error *error);
+// Every error against the reference, in the order of conditions; texts live for the call, which returns false
+// to stop. The store must not be used in it.
+struct store_measured {
+    const char *mode, *parameters; // of the condition
+    const char *scene, *metric;
+    double value;
+};
+typedef bool (*store_measured_fn)(void *user, const struct store_measured *measured);
+enum store_result store_read_measured_errors(struct store *store, int64_t reference_id, store_measured_fn take,
+                                             void *user, struct store_error *error);
 
 // --- logs, pushed ---
 
