@@ -113,6 +113,47 @@ void study_names_finish(struct study_names *names)
     *names = (struct study_names){0};
 }
 
+// Both ends of what a trial's course may set, each with each, on top of a planned option.
+static bool ends_agree(const struct protocol_block *block, const struct mode_choice *planned, char *error,
+                       size_t error_size)
+{
+    uint32_t count = block->kind == PROTOCOL_ADJUST ? block->adjust_count : 1;
+    bool ok = true;
+    for (uint32_t ends = 0; ends < 1u << count && ok; ends++) {
+        struct mode_choice choice = *planned;
+        for (uint32_t i = 0; i < count; i++) {
+            bool upper = ends >> i & 1;
+            const struct protocol_adjust *adjust = &block->adjusts[i];
+            const struct quest_plus_grid *level = &block->staircase.desc.level;
+            if (block->kind == PROTOCOL_ADJUST)
+                choice.values[adjust->parameter] = upper ? adjust->max : adjust->min;
+            else
+                choice.values[block->staircase.parameter] = upper ? level->max : level->min;
+        }
+        ok = mode_check(&choice, error, error_size);
+    }
+    if (!ok) {
+        size_t used = strlen(error);
+        snprintf(error + used, error_size - used, "; block '%s' may come to that: set narrower ends",
+                 block->name);
+    }
+    return ok;
+}
+
+static bool courses_agree(const struct plan *plan, char *error, size_t error_size)
+{
+    bool ok = true;
+    for (uint32_t i = 0; i < plan->trial_count && ok; i++) {
+        struct mode_choice choice;
+        const struct plan_trial *trial = &plan->trials[i];
+        if (trial->kind != PROTOCOL_ADJUST && trial->kind != PROTOCOL_STAIRCASE)
+            continue;
+        ok = stage_choice(&plan->conditions[trial->option[trial->test_slot]], &choice) &&
+             ends_agree(&plan->protocol->blocks[trial->block], &choice, error, error_size);
+    }
+    return ok;
+}
+
 // The conditions are the same for every participant, so the first one's plan names them all.
 static bool conditions_agree(const struct protocol *protocol, char *error, size_t error_size)
 {
@@ -126,6 +167,7 @@ static bool conditions_agree(const struct protocol *protocol, char *error, size_
         struct mode_choice choice;
         ok = stage_choice(&plan->conditions[i], &choice) && mode_check(&choice, error, error_size);
     }
+    ok = ok && courses_agree(plan, error, error_size);
     plan_destroy(plan);
     return ok;
 }

@@ -150,6 +150,42 @@ static void every_kind_without_frames(void **state)
     expect("punctual", "SELECT count(*), max(value) <= 0.1 FROM response WHERE question = 'epsilon'", "2|1");
 }
 
+// A deadline shorter than its usual look: it answers in time. Two parameters to set: it sets both.
+static void it_minds_deadlines_and_every_parameter(void **state)
+{
+    (void)state;
+    expect_done(command(
+        "sed -e 's/deadline_s: 20/deadline_s: 4/; s/step: 0.05, max: 1}}/step: 0.05, max: 1}, fovea_deg: "
+        "{start: [6, 8], step: 1, min: 5, max: 20}}/' '" SOURCE_DIR "/tests/app/kinds.yaml' > "
+        "'%s/hurry.yaml'; for s in atrium town; do for f in 5 20; do echo "
+        "$s,0.$f,time_warped:fovea_deg=$f; done; done | sed 's/0.5,/0.3,/; s/0.20,/0.1,/' | cat - "
+        "'%s/errors.csv' > '%s/two.csv'; fovstudy run '%s/hurry.yaml' --db '%s/hurry.db' "
+        "--participant p --display none --observer sim:errors='%s/two.csv',toggles_mean=9",
+        folder, folder, folder, folder, folder, folder));
+    expect("hurry", "SELECT count(*) FROM trial WHERE status = 'invalid'", "0");
+    expect("hurry",
+           "SELECT max(reaction_ns) BETWEEN 3e9 AND 4e9 FROM choice JOIN trial t ON t.id = trial_id WHERE "
+           "block IN ('pairs', 'stairs')",
+           "1");
+    expect("hurry",
+           "SELECT count(*), count(DISTINCT parameter) FROM response r JOIN adjust_step s ON s.trial_id = "
+           "r.trial_id AND s.parameter = r.question WHERE s.value = r.value AND s.id = (SELECT max(id) "
+           "FROM adjust_step m WHERE m.trial_id = r.trial_id AND m.parameter = r.question)",
+           "4|2");
+    // Ends that contradict the mode are found before anybody sits down.
+    const struct command_result *result =
+        command("sed -i 's/min: 5, max: 20/min: 5, max: 60/' '%s/hurry.yaml'; fovstudy check '%s/hurry.yaml'",
+                folder, folder);
+    assert_int_equal(result->status, 1);
+    assert_non_null(strstr(result->err, "block 'setting' may come to that"));
+    result =
+        command("sed 's/min_exposure_s: 0.4, deadline_s: 20/min_exposure_s: 0.4, deadline_s: 1.2/' '" SOURCE_DIR
+                "/tests/app/kinds.yaml' > '%s/short.yaml'; fovstudy check '%s/short.yaml'",
+                folder, folder);
+    assert_int_equal(result->status, 1);
+    assert_non_null(strstr(result->err, "to see both options takes 1.3 s"));
+}
+
 static void the_same_session_comes_again(void **state)
 {
     (void)state;
@@ -305,8 +341,11 @@ static int set_up(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_kind_without_frames),  cmocka_unit_test(the_same_session_comes_again),
-        cmocka_unit_test(interruptions_lose_nothing), cmocka_unit_test(what_is_not_known_is_refused),
+        cmocka_unit_test(every_kind_without_frames),
+        cmocka_unit_test(the_same_session_comes_again),
+        cmocka_unit_test(it_minds_deadlines_and_every_parameter),
+        cmocka_unit_test(interruptions_lose_nothing),
+        cmocka_unit_test(what_is_not_known_is_refused),
         cmocka_unit_test(every_kind_with_frames),
     };
     return cmocka_run_group_tests(tests, set_up, NULL);
