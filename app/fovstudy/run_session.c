@@ -8,11 +8,13 @@
 #include <string.h>
 #include <unistd.h>
 
-// On a terminal: where the session is. The options are named only with --unblind.
+// Where the session is, unless the experimenter's panel says so. The options are named only with --unblind.
 static void progress(void *user, const struct machine_view *view)
 {
     const struct run *run = user;
     bool terminal = isatty(STDERR_FILENO);
+    if (run->desk)
+        return;
     if (terminal)
         fprintf(stderr, "\r\033[K%" PRIu32 " of %" PRIu32 " answered, %s", view->done, view->total,
                 machine_screen_name(view->screen));
@@ -78,8 +80,11 @@ bool run_open_gaze(struct run *run, int64_t segments, char *error, size_t error_
 
 static void say(void *user, const char *sentence)
 {
-    (void)user;
-    fprintf(stderr, "%sfovstudy: %s\n", isatty(STDERR_FILENO) ? "\r\033[K" : "", sentence);
+    const struct run *run = user;
+    if (run->desk)
+        desk_say(run->desk, sentence);
+    else
+        fprintf(stderr, "%sfovstudy: %s\n", isatty(STDERR_FILENO) ? "\r\033[K" : "", sentence);
 }
 
 static void note_unblind(const struct run *run)
@@ -118,11 +123,22 @@ enum session_result run_go(struct run *run, const struct machine_start *start, c
         .progress = progress,
         .progress_user = run,
         .say = say,
+        .say_user = run,
         .patience_s = options->patience_s,
     };
+    desc.desk = run->desk =
+        desk_open(&(struct desk_desc){.out = stderr,
+                                      .in = STDIN_FILENO,
+                                      .plan = run->rows.plan,
+                                      .participant = options->participant,
+                                      .refresh_hz = run->view.display ? run->view.display->refresh_hz : 0.0,
+                                      .has_gaze = run->view.gaze != NULL,
+                                      .unblind = options->unblind});
     signal(SIGPIPE, SIG_IGN); // a reader of the events that goes away is told in a sentence
     note_unblind(run);
     enum session_result result = session_run(&desc, error, error_size);
+    desk_close(run->desk);
+    run->desk = NULL;
     // A renderer's sentence says more than that a frame failed.
     if (result == SESSION_FAILED && run->view.renderer_error[0])
         snprintf(error, error_size, "%s", run->view.renderer_error);

@@ -15,6 +15,7 @@ struct run {
     struct stage *stage;
     struct errors errors;
     struct event_lines lines;
+    struct desk *desk; // while the session runs on a terminal
 };
 
 // Without frames the observer's errors must be known before a session is made.

@@ -260,6 +260,39 @@ static bool prepare(struct loop *loop)
     return stage_prepare(loop->desc->stage, view.trial_index, loop->error, loop->error_size);
 }
 
+// The experimenter's keys and notes; a note belongs to the trial that runs.
+static void take_desk(struct loop *loop, int64_t now)
+{
+    struct machine_view view;
+    struct machine_event event;
+    char note[DESK_NOTE], detail[STORE_DETAIL_SIZE];
+    enum desk_command command = DESK_NOTHING;
+    if (!loop->desc->desk)
+        return;
+    do {
+        machine_look(loop->machine, &view);
+        command = desk_take(loop->desc->desk, &view, &event, note);
+        if (command == DESK_EVENT && !loop->trouble.on)
+            machine_event(loop->machine, now, &event);
+        if (command == DESK_NOTED) {
+            snprintf(detail, sizeof detail, "%s", note);
+            push_event(loop, now, "note", detail);
+        }
+    } while (command != DESK_NOTHING);
+}
+
+static void show_desk(struct loop *loop, const struct machine_view *view, int64_t now)
+{
+    struct fovea_use gaze = {.known = false};
+    if (!loop->desc->desk)
+        return;
+    if (loop->desc->gaze)
+        fovea_at(&loop->fovea, now, &gaze);
+    if (loop->desc->display && !isnan(loop->show.frame_ms))
+        desk_frame(loop->desc->desk, loop->show.frame_ms, loop->show.late);
+    desk_show(loop->desc->desk, now, view, &gaze, loop->trouble.on ? loop->trouble.sentence : NULL);
+}
+
 static bool present(struct loop *loop, const struct machine_view *view, int64_t now)
 {
     if (!loop->desc->display) {
@@ -298,6 +331,7 @@ static bool advance(struct loop *loop, struct machine_view *out_view)
         take_observer(loop, now_ns(loop));
     if (desc->display)
         take_keys(loop);
+    take_desk(loop, now_ns(loop));
     if (!prepare(loop))
         return false;
     int64_t now = now_ns(loop);
@@ -313,7 +347,9 @@ static bool advance(struct loop *loop, struct machine_view *out_view)
         machine_look(loop->machine, out_view);
     }
     tell(loop, out_view);
-    return present(loop, out_view, now);
+    bool good = present(loop, out_view, now);
+    show_desk(loop, out_view, now);
+    return good;
 }
 
 // One frame. False: the session is over, by failure or at its end (*out_view tells).

@@ -219,6 +219,8 @@ static void time_row(struct show *show, struct store_frame *row)
     struct display *display = show->desc->display;
     double refresh_ns = display->refresh_hz > 0.0 ? 1e9 / display->refresh_hz : NAN;
     row->present_estimated = true;
+    show->frame_ms = NAN;
+    show->late = false;
     if (display->simulated_clock) {
         row->present_ns = row->start_ns + (int64_t)llround(refresh_ns);
         return;
@@ -228,6 +230,9 @@ static void time_row(struct show *show, struct store_frame *row)
     if (!isnan(refresh_ns))
         row->late =
             show->last_present_ns >= 0 && (double)(row->present_ns - show->last_present_ns) > 1.5 * refresh_ns;
+    if (show->last_present_ns >= 0)
+        show->frame_ms = (double)(row->present_ns - show->last_present_ns) * 1e-6;
+    show->late = row->late == 1;
     show->last_present_ns = row->present_ns;
 }
 
