@@ -10,6 +10,7 @@ int command_check(int argc, char **argv);
 int command_modes(int argc, char **argv);
 int command_scenes(int argc, char **argv);
 int command_render(int argc, char **argv);
+int command_strip(int argc, char **argv);
 int command_devices(int argc, char **argv);
 
 #endif

@@ -16,6 +16,7 @@ static const struct {
     {"modes", "list the rendering modes with their parameters", command_modes},
     {"scenes", "list the built-in scenes with their parameters", command_scenes},
     {"render", "walk a camera path and write pictures", command_render},
+    {"strip", "walk a camera path in several modes and put them side by side", command_strip},
     {"forget", "erase a person's rows from a study file", command_forget},
     {"devices", "list GPUs and monitors", command_devices},
 };

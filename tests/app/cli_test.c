@@ -67,6 +67,13 @@ static void wrong_usage_is_exit_2(void **state)
         {"fovstudy run a.yaml --db x.db --participant p --attribute age", "age"},
         {"fovstudy run a.yaml --db x.db --participant p --display headless", "--observer"},
         {"fovstudy run a.yaml --db x.db --participant p --display none", "--observer"},
+        {"fovstudy strip --scene town --out x.png", "--modes"},
+        {"fovstudy strip --modes vrs regular --scene town", "--out"},
+        {"fovstudy strip --modes regular --out x.png", "--scene"},
+        {"fovstudy strip --modes regular warped --scene town --out x.png", "warped"},
+        {"fovstudy strip --modes regular --scene town --out x.png word", "word"},
+        {"fovstudy strip --modes vrs --scene town --out x.png --size 8x8", "8x8"},
+        {"fovstudy strip --modes vrs vrs vrs vrs vrs vrs vrs vrs vrs --scene town --out x.png", "more than 8"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
         expect(command("%s", cases[i].line), 2, cases[i].about);
@@ -76,8 +83,9 @@ static void help_is_exit_0(void **state)
 {
     (void)state;
     static const char *const lines[] = {
-        "fovstudy --help",       "fovstudy --version",     "fovstudy run --help",    "fovstudy check --help",
-        "fovstudy modes --help", "fovstudy scenes --help", "fovstudy render --help", "fovstudy devices --help"};
+        "fovstudy --help",        "fovstudy --version",    "fovstudy run --help",
+        "fovstudy check --help",  "fovstudy modes --help", "fovstudy scenes --help",
+        "fovstudy render --help", "fovstudy strip --help", "fovstudy devices --help"};
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
         const struct command_result *result = command("%s", lines[i]);
         assert_int_equal(result->status, 0);
