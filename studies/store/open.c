@@ -181,6 +181,18 @@ static enum store_result identify(struct store *store, const struct store_desc *
     return STORE_OK;
 }
 
+static const char writing[] =
+    "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA temp_store = MEMORY";
+
+enum store_result sql_reconnect(struct store *store, struct store_error *error)
+{
+    disconnect(store);
+    enum store_result result = connect(store, store->path, NULL, error);
+    if (result == STORE_OK)
+        result = sql_execute(store, writing, error);
+    return result == STORE_OK ? sql_execute(store, "PRAGMA foreign_keys = ON", error) : result;
+}
+
 static enum store_result prepare_database(struct store *store, const struct store_desc *desc,
                                           struct store_error *error)
 {
@@ -193,8 +205,7 @@ static enum store_result prepare_database(struct store *store, const struct stor
     if (result == STORE_OK && store->reading)
         result = sql_execute(store, "PRAGMA query_only = ON", error);
     if (result == STORE_OK && !store->reading)
-        result = sql_execute(
-            store, "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA temp_store = MEMORY", error);
+        result = sql_execute(store, writing, error);
     if (result == STORE_OK && !store->reading)
         result = migrate_apply(store, &ladder, state, error);
     if (result == STORE_OK)
