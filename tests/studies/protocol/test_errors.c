@@ -118,9 +118,11 @@ static void test_names(void **state)
          "p.yaml:27:15: option 'foveatd' is not known here; did you mean 'foveated'?"},
         {"before", "kind: rate", "kind: rat",
          "p.yaml:22:11: kind 'rat' is not known here; did you mean 'rate'?"},
-        {"main", "kind: toggle", "kind: staircase", "p.yaml:25:5: the staircase block has no 'staircase'; add it"},
+        {"main", "kind: toggle", "kind: staircase",
+         "p.yaml:25:5: the staircase block has no 'staircase'; add it"},
         {"", "mode: time_warped", "mode: ray_traced",
-         "p.yaml:7:20: mode 'ray_traced' does not exist in this program yet; `fovstudy modes` lists those that do"},
+         "p.yaml:7:20: mode 'ray_traced' does not exist in this program yet; `fovstudy modes` lists those that "
+         "do"},
         {"", "fovea_deg", "fovea_dg",
          "p.yaml:30:26: parameter of time_warped 'fovea_dg' is not known here; did you mean 'fovea_deg'?"},
         {"", "epsilon: [", "epsilom: [",
