@@ -15,6 +15,7 @@ static const struct {
     {"modes", "list the rendering modes with their parameters", command_modes},
     {"scenes", "list the built-in scenes with their parameters", command_scenes},
     {"render", "walk a camera path and write pictures", command_render},
+    {"schema", "print the protocol language, for editors or as a reference page", command_schema},
     {"devices", "list GPUs and monitors", command_devices},
 };
 enum { COMMANDS = sizeof commands / sizeof commands[0] };

@@ -29,7 +29,8 @@ static bool block_options_read(struct reader *reader, const struct yaml_node *ma
     uint32_t least = pair ? 2 : 1, most = block->kind == PROTOCOL_TASK ? 1 : 2;
     if (!read_is_list(reader, list, what, least, most))
         return false;
-    return key_names(reader, map, "options", "option", names, most, block->options, &block->option_count);
+    return key_names(reader, map, &language_block, "options", "option", names, most, block->options,
+                     &block->option_count);
 }
 
 static bool block_scenes_read(struct reader *reader, const struct yaml_node *map, struct protocol_block *block)
@@ -39,7 +40,7 @@ static bool block_scenes_read(struct reader *reader, const struct yaml_node *map
     scene_names(reader, names);
     for (uint32_t i = 0; i < reader->protocol->scene_count; i++)
         block->scenes[block->scene_count++] = i;
-    if (!key_names(reader, map, "scenes", "scene", names, PROTOCOL_SCENES, block->scenes,
+    if (!key_names(reader, map, &language_block, "scenes", "scene", names, PROTOCOL_SCENES, block->scenes,
                    &block->scene_count) ||
         !key_word(reader, map, &language_block, "scene_use", &use))
         return false;

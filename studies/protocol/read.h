@@ -64,12 +64,13 @@ bool key_seconds(struct reader *reader, const struct yaml_node *map, const struc
                  const char *key, int64_t *out_ns);
 bool key_word(struct reader *reader, const struct yaml_node *map, const struct language_section *section,
               const char *key, uint32_t *out_index);
-// Two whole numbers in order, both from min to max.
-bool key_range(struct reader *reader, const struct yaml_node *map, const char *key, int64_t min, int64_t max,
-               int64_t out[2]);
+// Two whole numbers in order, both within the range of the list's items.
+bool key_range(struct reader *reader, const struct yaml_node *map, const struct language_section *section,
+               const char *key, int64_t out[2]);
 // A name or a list of names, each one of `known`; at most `capacity` indices, none twice.
-bool key_names(struct reader *reader, const struct yaml_node *map, const char *key, const char *what,
-               const char *const *known, uint32_t capacity, uint32_t *out, uint32_t *out_count);
+bool key_names(struct reader *reader, const struct yaml_node *map, const struct language_section *section,
+               const char *key, const char *what, const char *const *known, uint32_t capacity, uint32_t *out,
+               uint32_t *out_count);
 // The key of a node in its mapping as a name of the file's own.
 bool read_key_name(struct reader *reader, const struct yaml_node *node, const char *what,
                    char out[PROTOCOL_NAME]);
