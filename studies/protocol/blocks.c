@@ -48,6 +48,26 @@ static bool block_scenes_read(struct reader *reader, const struct yaml_node *map
     return true;
 }
 
+// A block that comes later, or itself, can be no complement's first half.
+static bool later_check(struct reader *reader, const struct yaml_node *map, const struct yaml_node *node)
+{
+    bool later = false;
+    for (; map && node->kind == YAML_SCALAR; map = map->next, later = true) {
+        const struct yaml_node *name = map->kind == YAML_MAP ? yaml_get(map, "name") : NULL;
+        if (!name || name->kind != YAML_SCALAR || strcmp(name->text, node->text) != 0)
+            continue;
+        return later ? read_fail(reader, node,
+                                 "block '%.60s' comes later; a complement names an earlier one, so "
+                                 "turn the two around",
+                                 node->text)
+                     : read_fail(reader, node,
+                                 "block '%.60s' cannot be the complement of itself; name the block "
+                                 "before it",
+                                 node->text);
+    }
+    return true;
+}
+
 static bool complement_read(struct reader *reader, const struct yaml_node *map, struct protocol_block *block)
 {
     struct protocol *protocol = reader->protocol;
@@ -59,7 +79,7 @@ static bool complement_read(struct reader *reader, const struct yaml_node *map, 
     for (uint32_t i = 0; i < protocol->block_count; i++)
         names[i] = protocol->blocks[i].name;
     uint32_t index;
-    if (!read_word(reader, node, "complement_of", names, &index))
+    if (!later_check(reader, map, node) || !read_word(reader, node, "complement_of", names, &index))
         return false;
     const struct protocol_block *earlier = &protocol->blocks[index];
     if (block->kind != PROTOCOL_RATE || earlier->kind != PROTOCOL_RATE || earlier->complement_of >= 0)
@@ -167,6 +187,7 @@ bool blocks_read(struct reader *reader, const struct yaml_node *root, const stru
         return false;
     for (const struct yaml_node *node = list->first; node; node = node->next) {
         protocol->blocks[protocol->block_count].settings = *study;
+        protocol->block_places[protocol->block_count] = (struct protocol_place){node->line, node->column};
         if (!block_read(reader, node, &protocol->blocks[protocol->block_count]) || !groups_check(reader, node))
             return false;
         protocol->block_count++;

@@ -157,7 +157,8 @@ bool cell_check(struct reader *reader, const struct yaml_node *node, const struc
 {
     const struct protocol_settings *settings = &cell->settings;
     bool pair = protocol_kind_is_pair(block->kind);
-    if (!question_check(reader, node, block, cell) || !count_check(reader, node, block, settings))
+    if (!question_check(reader, node, block, cell) || !count_check(reader, node, block, settings) ||
+        !timing_check(reader, node, block, settings))
         return false;
     if (settings->foveate == PROTOCOL_FOVEATE_TARGET && settings->fixation == PROTOCOL_FIXATION_FREE)
         return read_fail(

@@ -49,6 +49,8 @@ bool questions_read(struct reader *reader, const struct yaml_node *root)
 {
     struct protocol *protocol = reader->protocol;
     const struct yaml_node *map = yaml_get(root, "questions");
+    if (!map)
+        return true;
     if (!read_is_map(reader, map, "questions"))
         return false;
     if (map->count == 0 || map->count > PROTOCOL_QUESTIONS)

@@ -22,6 +22,9 @@ bool read_fail(struct reader *reader, const struct yaml_node *node, const char *
 // The same, placed at the node's name in its mapping.
 bool read_fail_key(struct reader *reader, const struct yaml_node *node, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+// A sentence for protocol.remarks, placed at the node, or at its name where it has one.
+void read_remark(struct reader *reader, const struct yaml_node *node, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 // "WHAT 'word' is not known here; did you mean 'nearest'?" or the list of what is; known ends with NULL.
 bool read_unknown(struct reader *reader, const struct yaml_node *node, bool at_key, const char *what,
                   const char *word, const char *const *known);
