@@ -107,6 +107,8 @@ void plan_members_write(struct text *text, const char *json, size_t used, size_t
         text_add(text, " %s", member);
         used += kept + 1;
     }
+    while (text->size > 0 && text->data[text->size - 1] == ' ') // of a line without members
+        text->size--;
     text_add(text, "\n");
 }
 

@@ -34,7 +34,7 @@ static const struct language_key protocol_keys[] = {
     {"settings", LANGUAGE_MAP, false, .of = "settings", .about = "For every block that does not set its own.",
      .example = "settings: {camera: path, question: prefer}"},
     {"questions", LANGUAGE_TABLE, false, 1, 16, .of = "the question",
-     .about = "What participants are asked, by names of your own; only adjust blocks ask nothing.",
+     .about = "What participants are asked, by names of your own; adjustments alone need none.",
      .example = "questions: {prefer: {text: \"Which one do you prefer, A or B?\"}}"},
     {"instructions", LANGUAGE_TEXT, true, .about = "Shown once, before everything.",
      .example = "instructions: You will look around in scenes and judge them."},

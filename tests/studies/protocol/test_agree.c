@@ -23,6 +23,8 @@ struct odd {
     const char *text, *sentence; // of the only remark; "": none
 };
 
+#define MORE "  equal: {text: Which?, correct: reference, equal: yes}\n  sure: {text: Sure?, scale: [1, 4]}\n"
+
 static struct protocol *parse(const char *lines, char *error)
 {
     char text[4096];
@@ -153,12 +155,15 @@ static void test_analysis_and_rules(void **state)
 static void test_contradictions(void **state)
 {
     (void)state;
-#define STAIRS(model)                                                                                          \
-    "settings: {question: prefer}\nblocks:\n- name: main\n  kind: staircase\n  options: [foveated, regular]\n" \
-    "  staircase: {parameter: epsilon, method: quest_plus, larger: easier, trials: 9, level: {min: 0.1, max: " \
-    "1, "                                                                                                      \
-    "count: 5}, model: {family: logistic, threshold: {min: 0.1, max: 1, count: 5}, slope: {min: 1, max: 9, "   \
-    "count: 3}" model "}}\n"
+#define STAIRS(asked, model)                                                                                   \
+    MORE "settings: {question: " asked                                                                         \
+         "}\nblocks:\n- name: main\n  kind: staircase\n  options: [foveated, regular]\n"                       \
+         "  staircase: {parameter: epsilon, method: quest_plus, larger: easier, trials: 9, level: {min: 0.1, " \
+         "max: "                                                                                               \
+         "1, "                                                                                                 \
+         "count: 5}, model: {family: logistic, threshold: {min: 0.1, max: 1, count: 5}, slope: {min: 1, max: " \
+         "9, "                                                                                                 \
+         "count: 3}" model "}}\n"
     const struct odd cases[] = {
         {SETTINGS "blocks:\n- name: main\n  kind: sequential\n  options: [foveated, regular]\n"
                   "  settings: {view_s: 2, min_exposure_s: 3}\n",
@@ -172,9 +177,14 @@ static void test_contradictions(void **state)
          "p:16:3: block 'main' takes no answer before both options were shown for 2 s (min_exposure_s), with "
          "the "
          "fade 4.5 s, but none after 4 s (deadline_s); raise deadline_s or lower min_exposure_s"},
-        {STAIRS(""),
-         "p:19:14: a staircase follows right and wrong answers, but question 'prefer' is a preference; give it "
+        {STAIRS("prefer", ""),
+         "p:21:14: a staircase follows right and wrong answers, but question 'prefer' is a preference; give it "
          "'correct: reference', or ask one that has a scale"},
+        {STAIRS("equal", ", guess: {min: 0.5, max: 0.5}"),
+         "p:21:14: guess is for two outcomes; leave it out with 3"},
+        {STAIRS("sure", ", guess: {min: 0.5, max: 0.5}"),
+         "p:21:14: guess is for two outcomes; leave it out with 4"},
+        {STAIRS("equal", ""), ""},
     };
     expect_errors(cases, sizeof cases / sizeof cases[0]);
 }
