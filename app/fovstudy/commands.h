@@ -12,5 +12,6 @@ int command_scenes(int argc, char **argv);
 int command_render(int argc, char **argv);
 int command_strip(int argc, char **argv);
 int command_devices(int argc, char **argv);
+int command_schema(int argc, char **argv);
 
 #endif

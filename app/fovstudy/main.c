@@ -18,6 +18,7 @@ static const struct {
     {"render", "walk a camera path and write pictures", command_render},
     {"strip", "walk a camera path in several modes and put them side by side", command_strip},
     {"forget", "erase a person's rows from a study file", command_forget},
+    {"schema", "print the protocol language, for editors or as a reference page", command_schema},
     {"devices", "list GPUs and monitors", command_devices},
 };
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
