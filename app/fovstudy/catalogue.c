@@ -52,6 +52,13 @@ const char *study_scene_spec(const struct bound_scene *bound, size_t count, cons
     return name;
 }
 
+const char *study_shown_scene(const struct protocol *protocol, uint32_t scene, const struct bound_scene *bound,
+                              size_t count)
+{
+    const char *name = protocol->scenes[scene], *spec = study_scene_spec(bound, count, name);
+    return spec == name && *protocol->stand_ins[scene] ? protocol->stand_ins[scene] : spec;
+}
+
 // The modes of the papers, README "The modes".
 static const char *const planned_modes[STUDY_PLANNED_MODES] = {
     "regular",    "time_warped",     "vrs",           "adaptive",

@@ -36,6 +36,9 @@ bool study_bind_scene(struct bound_scene *bound, size_t *count, const char *text
                       size_t error_size);
 // What a scene of the protocol stands for: its binding, else its own name.
 const char *study_scene_spec(const struct bound_scene *bound, size_t count, const char *name);
+// What is shown for a scene of the protocol: its binding, else what stands in for it, else its own name.
+const char *study_shown_scene(const struct protocol *protocol, uint32_t scene, const struct bound_scene *bound,
+                              size_t count);
 
 bool study_names_init(struct study_names *names, const struct bound_scene *bound,
                       size_t count); // false: no memory

@@ -63,7 +63,7 @@ bool run_find_errors(struct run *run, char *error, size_t error_size)
     const char *specs[PROTOCOL_SCENES];
     const struct protocol *protocol = run->study.protocol;
     for (uint32_t i = 0; i < protocol->scene_count; i++)
-        specs[i] = study_scene_spec(run->options.scenes, run->options.scene_count, protocol->scenes[i]);
+        specs[i] = study_shown_scene(protocol, i, run->options.scenes, run->options.scene_count);
     return run_rows_conditions(&run->rows, error, error_size) &&
            run_rows_reference(&run->rows, &run->study, error, error_size) &&
            errors_init(&run->errors, run->rows.plan, run->rows.store, run->rows.ids.condition_ids,
