@@ -64,8 +64,8 @@ struct plan {
     struct plan_trial *trials;
     uint32_t trial_count;
     // By how many trials what DESIGN promises is missed, summed over the worst block: scenes within one over
-    // the block; sides and first-shown options within one over the block and each factor level. 0 for every
-    // full factorial.
+    // the trials that name none; sides and first-shown options within one over the block and each factor level.
+    // 0 for every full factorial.
     uint32_t imbalance;
 };
 
