@@ -37,8 +37,10 @@ static void carry_text(struct text *text, const struct check_report *report)
 static void clock_write(struct text *text, double seconds)
 {
     long whole = (long)(seconds + 0.5);
-    text_add(text, whole >= 3600 ? "%ld:%02ld:%02ld" : "", whole / 3600, whole / 60 % 60, whole % 60);
-    text_add(text, whole < 3600 ? "%ld:%02ld" : "", whole / 60, whole % 60);
+    if (whole >= 3600)
+        text_add(text, "%ld:%02ld:%02ld", whole / 3600, whole / 60 % 60, whole % 60);
+    else
+        text_add(text, "%ld:%02ld", whole / 60, whole % 60);
 }
 
 static void duration_text(struct text *text, const struct check_report *report)
@@ -76,7 +78,8 @@ char *check_report_text(const struct check_report *report)
     carry_text(&text, report);
     duration_text(&text, report);
     check_figures_text(&text, &report->analyses, report->people, report->people_assumed);
-    text_add(&text, *report->remarks ? "\nremarks\n%s" : "", report->remarks);
+    if (*report->remarks)
+        text_add(&text, "\nremarks\n%s", report->remarks);
     return text_take(&text);
 }
 

@@ -115,12 +115,15 @@ void plan_members_write(struct text *text, const char *json, size_t used, size_t
 static void header_write(struct text *text, const struct columns *c)
 {
     text_add(text, "\n%5s  %-*s ", "trial", c->block, "block");
-    text_add(text, c->role ? "%-8s " : "", "role");
+    if (c->role)
+        text_add(text, "%-8s ", "role");
     text_add(text, "%-10s %-*s ", "kind", c->scene, "scene");
     if (c->question)
         text_add(text, "%-*s ", c->asked, "question");
-    text_add(text, c->view ? "%6s " : "", "view_s");
-    text_add(text, c->fixation ? "%-8s " : "", "fixation");
+    if (c->view)
+        text_add(text, "%6s ", "view_s");
+    if (c->fixation)
+        text_add(text, "%-8s ", "fixation");
     text_add(text, "%3s %3s %4s %5s  %s\n", "a", "b", "test", "first", "factors");
 }
 
@@ -130,12 +133,15 @@ static void trial_write(struct text *text, const struct plan *plan, const struct
     const char *test = plan_slot_name(trial->test_slot);
     size_t begin = text->size;
     text_add(text, "%5u  %-*s ", trial->ordinal, c->block, block_name(plan, trial));
-    text_add(text, c->role ? "%-8s " : "", protocol_role_name(trial->role));
+    if (c->role)
+        text_add(text, "%-8s ", protocol_role_name(trial->role));
     text_add(text, "%-10s %-*s ", protocol_kind_name(trial->kind), c->scene, trial->scene);
     if (c->question)
         text_add(text, "%-*s ", c->asked, question_name(trial));
-    text_add(text, c->view ? "%6g " : "", (double)trial->resolved->view_ns / 1e9);
-    text_add(text, c->fixation ? "%-8s " : "", trial->fixation);
+    if (c->view)
+        text_add(text, "%6g ", (double)trial->resolved->view_ns / 1e9);
+    if (c->fixation)
+        text_add(text, "%-8s ", trial->fixation);
     text_add(text, "%3d ", trial->option[0] + 1);
     if (trial->option[1] >= 0)
         text_add(text, "%3d ", trial->option[1] + 1);
