@@ -61,6 +61,9 @@ struct renderer_option *renderer_option_create(struct renderer *renderer, struct
                                                const struct mode_choice *choice,
                                                const struct renderer_settings *settings);
 void renderer_option_destroy(struct renderer_option *option);
+// New numbers from the next frame on, for an option made with settings.adjustable; its mode and its switches
+// must be the same. It draws what an option made with them would, history apart. False: it stays as it was.
+bool renderer_option_set(struct renderer_option *option, const struct mode_choice *choice);
 // What was built, why, and its memory, one line each; false: too small.
 bool renderer_option_explain(const struct renderer_option *option, char *out, size_t out_size);
 uint64_t renderer_option_memory(const struct renderer_option *option); // bytes of its targets and buffers
