@@ -73,7 +73,7 @@ static void take_observer(struct loop *loop, int64_t now)
     struct machine_event event;
     machine_look(loop->machine, &view);
     for (;;) {
-        struct observer_errors errors = loop->desc->display ? show_errors(&loop->show, view.trial_index)
+        struct observer_errors errors = loop->desc->display ? show_errors(&loop->show, &view)
                                                             : errors_of(loop->desc->errors, view.trial_index);
         if (!observer_next(&loop->observer, now, &view, &errors, &at_ns, &event))
             return;
@@ -123,7 +123,8 @@ static bool take_records(struct loop *loop)
             machine_event(loop->machine, now_ns(loop), &stored);
         }
         if (record.kind == MACHINE_TRIAL_DONE && loop->desc->display &&
-            !show_store_errors(&loop->show, record.trial, loop->error, loop->error_size))
+            !show_store_errors(&loop->show, machine_trial(loop->machine, record.trial), loop->error,
+                               loop->error_size))
             return false;
     }
     return true;
@@ -166,7 +167,7 @@ static bool prepare(struct loop *loop)
                 view.screen == MACHINE_REST || view.screen == MACHINE_STIMULUS;
     if (!loop->desc->stage || !view.trial || !soon)
         return true;
-    return stage_prepare(loop->desc->stage, view.trial_index, loop->error, loop->error_size);
+    return stage_prepare(loop->desc->stage, &view, loop->error, loop->error_size);
 }
 
 static bool present(struct loop *loop, const struct machine_view *view, int64_t now)
