@@ -129,7 +129,7 @@ static void take_observer(struct loop *loop, int64_t now)
     struct machine_event event;
     machine_look(loop->machine, &view);
     for (;;) {
-        struct observer_errors errors = loop->desc->display ? show_errors(&loop->show, view.trial_index)
+        struct observer_errors errors = loop->desc->display ? show_errors(&loop->show, &view)
                                                             : errors_of(loop->desc->errors, view.trial_index);
         if (!observer_next(&loop->observer, now, &view, &errors, &at_ns, &event))
             return;
@@ -174,7 +174,8 @@ static bool take_record(struct loop *loop, bool *out_failed)
     *out_failed = result == RECORDER_FAILED;
     bool waits = result == RECORDER_WAIT ||
                  (result == RECORDER_DONE && record->kind == MACHINE_TRIAL_DONE && loop->desc->display &&
-                  !show_store_errors(&loop->show, record->trial, loop->error, loop->error_size));
+                  !show_store_errors(&loop->show, machine_trial(loop->machine, record->trial), loop->error,
+                                     loop->error_size));
     if (waits)
         trouble_tell(&loop->trouble, real_ns(), loop->error);
     if (waits || *out_failed)
@@ -254,10 +255,10 @@ static bool prepare(struct loop *loop)
     struct machine_view view;
     machine_look(loop->machine, &view);
     bool soon = view.screen == MACHINE_INSTRUCTIONS || view.screen == MACHINE_READY ||
-                view.screen == MACHINE_REST || view.screen == MACHINE_STIMULUS;
+                view.screen == MACHINE_REST || view.screen == MACHINE_BREAK || view.screen == MACHINE_STIMULUS;
     if (!loop->desc->stage || !view.trial || !soon)
         return true;
-    return stage_prepare(loop->desc->stage, view.trial_index, loop->error, loop->error_size);
+    return stage_prepare(loop->desc->stage, &view, loop->error, loop->error_size);
 }
 
 // The experimenter's keys and notes; a note belongs to the trial that runs.

@@ -1,6 +1,7 @@
 #include "app/session/measure.h"
 
 #include "analysis/image/error.h"
+#include "app/session/live.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -14,6 +15,9 @@ struct measure {
     struct image_error_sum *sums; // [condition][scene]
     uint8_t *shown, *wanted;      // one eye's pixels each
     uint32_t trial, attempt;      // of the counts
+    struct image_error_sum own;   // of an option with values of its own
+    struct mode_choice values;    // these; mode NULL: none
+    uint32_t own_trial, own_attempt;
     uint64_t full_frames[2];
 };
 
@@ -80,17 +84,44 @@ static bool add_eye(struct measure *measure, struct image_error_sum *sum, int ey
     return image_error_add(sum, &test, &truth, &view);
 }
 
-bool measure_take(struct measure *measure, uint32_t condition, uint32_t scene, struct renderer_option *option,
-                  struct renderer_option *reference, const struct frame *frame)
+static bool take(struct measure *measure, struct image_error_sum *sum, struct renderer_option *option,
+                 struct renderer_option *reference, const struct frame *frame)
 {
     struct frame_stats stats;
-    struct image_error_sum *sum = &measure->sums[(size_t)condition * measure->scene_count + scene];
     if (!renderer_draw(reference, frame, &stats))
         return false;
     for (int eye = 0; eye < EYES; eye++)
         if (!add_eye(measure, sum, eye, option, reference, frame))
             return false;
     return true;
+}
+
+bool measure_take(struct measure *measure, uint32_t condition, uint32_t scene, struct renderer_option *option,
+                  struct renderer_option *reference, const struct frame *frame)
+{
+    struct image_error_sum *sum = &measure->sums[(size_t)condition * measure->scene_count + scene];
+    return take(measure, sum, option, reference, frame);
+}
+
+bool measure_take_own(struct measure *measure, const struct mode_choice *values, struct renderer_option *option,
+                      struct renderer_option *reference, const struct frame *frame)
+{
+    if (!measure->values.mode || !live_same(&measure->values, values) || measure->own_trial != measure->trial ||
+        measure->own_attempt != measure->attempt) {
+        measure->own = (struct image_error_sum){0};
+        measure->values = *values;
+        measure->own_trial = measure->trial;
+        measure->own_attempt = measure->attempt;
+    }
+    return take(measure, &measure->own, option, reference, frame);
+}
+
+double measure_own_error(const struct measure *measure, const struct machine_view *view)
+{
+    if (!measure->values.mode || measure->own_trial != view->trial_index ||
+        measure->own_attempt != view->attempt)
+        return NAN;
+    return image_error_result(&measure->own).weighted_rmse / 255.0;
 }
 
 double measure_error(const struct measure *measure, uint32_t condition, uint32_t scene)

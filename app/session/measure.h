@@ -25,7 +25,12 @@ bool measure_due(struct measure *measure, const struct machine_view *view);
 // Draws the frame with the reference and adds the difference. False where drawing or reading failed.
 bool measure_take(struct measure *measure, uint32_t condition, uint32_t scene, struct renderer_option *option,
                   struct renderer_option *reference, const struct frame *frame);
-// NaN where nothing was measured yet.
+// The same for an option that a trial gives values of its own: kept for as long as trial, attempt and values
+// stay.
+bool measure_take_own(struct measure *measure, const struct mode_choice *values, struct renderer_option *option,
+                      struct renderer_option *reference, const struct frame *frame);
+// NaN where nothing was measured yet, or another attempt has begun since.
+double measure_own_error(const struct measure *measure, const struct machine_view *view);
 double measure_error(const struct measure *measure, uint32_t condition, uint32_t scene);
 
 #endif

@@ -25,32 +25,31 @@ void show_finish(struct show *show)
     show->measure = NULL;
 }
 
-static uint32_t scene_index(const struct show *show, uint32_t trial)
+static uint32_t scene_index(const struct show *show, const char *name)
 {
-    const char *name = show->desc->plan->trials[trial].scene;
     uint32_t i = 0;
     while (i < show->desc->scene_count && strcmp(show->desc->scenes[i].name, name) != 0)
         i++;
     return i;
 }
 
-static double option_error(const struct show *show, uint32_t trial, int slot)
+static double option_error(const struct show *show, const struct plan_trial *trial, int slot)
 {
-    const struct plan *plan = show->desc->plan;
-    int32_t condition = plan->trials[trial].option[slot];
+    int32_t condition = trial->option[slot];
     if (condition < 0 || show->desc->ids->condition_ids[condition] == show->desc->reference_id)
         return 0.0;
-    return measure_error(show->measure, (uint32_t)condition, scene_index(show, trial));
+    return measure_error(show->measure, (uint32_t)condition, scene_index(show, trial->scene));
 }
 
-struct observer_errors show_errors(const struct show *show, uint32_t trial)
+struct observer_errors show_errors(const struct show *show, const struct machine_view *view)
 {
     struct observer_errors errors = {{0.0, 0.0}};
-    if (show->measure && trial < show->desc->plan->trial_count) {
-        for (int slot = 0; slot < 2; slot++) {
-            double error = option_error(show, trial, slot);
-            errors.slot[slot] = isnan(error) ? 0.0 : error;
-        }
+    for (int slot = 0; show->measure && view->trial && slot < 2; slot++) {
+        double error = view->trial->test_slot == (enum plan_slot)slot ? measure_own_error(show->measure, view)
+                                                                      : (double)NAN;
+        if (isnan(error))
+            error = option_error(show, view->trial, slot);
+        errors.slot[slot] = isnan(error) ? 0.0 : error;
     }
     return errors;
 }
@@ -69,14 +68,13 @@ static bool store_error_of(const struct show *show, uint32_t condition, const ch
     return false;
 }
 
-bool show_store_errors(const struct show *show, uint32_t trial, char *error, size_t error_size)
+bool show_store_errors(const struct show *show, const struct plan_trial *trial, char *error, size_t error_size)
 {
-    const struct plan_trial *planned = &show->desc->plan->trials[trial];
     for (int slot = 0; show->measure && slot < 2; slot++) {
         double value = option_error(show, trial, slot);
-        if (planned->option[slot] >= 0 && !isnan(value) &&
-            !store_error_of(show, (uint32_t)planned->option[slot],
-                            show->desc->scenes[scene_index(show, trial)].spec, value, error, error_size))
+        if (trial->option[slot] >= 0 && !isnan(value) &&
+            !store_error_of(show, (uint32_t)trial->option[slot],
+                            show->desc->scenes[scene_index(show, trial->scene)].spec, value, error, error_size))
             return false;
     }
     return true;
@@ -103,9 +101,15 @@ bool show_measure_rest(struct show *show, char *error, size_t error_size)
 }
 
 // Which directions the fovea takes, and where they came from.
-static enum store_fovea follow(const struct show *show, const struct fovea *fovea, int64_t start_ns,
-                               struct fovea_use *out)
+static enum store_fovea follow(const struct show *show, const struct machine_view *view,
+                               const struct fovea *fovea, int64_t start_ns, struct fovea_use *out)
 {
+    struct fixation_place at;
+    if (view->trial->resolved->foveate == PROTOCOL_FOVEATE_TARGET &&
+        targets_fixation(stage_targets(show->desc->stage), view, &at)) {
+        fovea_on(at.point, show->desc->ipd_m, out);
+        return STORE_FOVEA_TARGET;
+    }
     if (!show->desc->gaze) {
         *out = (struct fovea_use){.known = false};
         return STORE_FOVEA_FIXED;
@@ -146,6 +150,53 @@ static void tell_redraw(const struct show *show, const struct machine_view *view
                                                               .detail = detail});
 }
 
+// An option with values of its own is not its condition, and is measured by itself.
+static bool measure_option(struct show *show, const struct machine_view *view, struct renderer_option *option,
+                           const struct frame *frame)
+{
+    const struct session_desc *desc = show->desc;
+    struct renderer_option *reference = stage_reference(desc->stage);
+    bool own = stage_effective(desc->stage, view->slot) != NULL;
+    bool is_reference = !own && desc->ids->condition_ids[view->condition] == desc->reference_id;
+    if (!show->measure || is_reference || !measure_due(show->measure, view))
+        return true;
+    if (own)
+        return measure_take_own(show->measure, stage_now(desc->stage, view->slot), option, reference, frame);
+    return measure_take(show->measure, (uint32_t)view->condition, scene_index(show, view->trial->scene), option,
+                        reference, frame);
+}
+
+// Where the spheres to count stand: an event row each, JSON as targets.h says.
+static void tell_spheres(const struct show *show, const struct machine_view *view,
+                         const struct recorder *recorder, int64_t at_ns)
+{
+    char detail[STORE_DETAIL_SIZE];
+    const struct targets *targets = stage_targets(show->desc->stage);
+    for (uint32_t i = 0; targets_sphere_json(targets, view->showing, i, detail, sizeof detail); i++)
+        store_push_event(show->desc->store, &(struct store_event){.session_id = show->desc->ids->session_id,
+                                                                  .segment_id = show->desc->ids->segment_id,
+                                                                  .trial_id = recorder->trial_id,
+                                                                  .at_ns = at_ns,
+                                                                  .kind = "sphere",
+                                                                  .detail = detail});
+}
+
+// Targets over the pictures; the row tells where the eyes were asked to be.
+static bool lay_marks(const struct show *show, const struct machine_view *view, struct store_frame *row)
+{
+    struct renderer_mark marks[RENDERER_MARKS];
+    struct fixation_place at;
+    const struct session_desc *desc = show->desc;
+    const struct targets *targets = stage_targets(desc->stage);
+    const struct targets_view eyes = {desc->fov, desc->display->width, desc->display->height, desc->ipd_m};
+    if (targets_fixation(targets, view, &at)) {
+        row->target_x_deg = at.x_deg;
+        row->target_y_deg = at.y_deg;
+    }
+    uint32_t count = targets_marks(targets, view, &row->head_pose, &eyes, marks, RENDERER_MARKS);
+    return renderer_set_marks(desc->renderer, marks, count);
+}
+
 // Renders the option of the view; fills what the row tells about it.
 static bool draw_option(struct show *show, const struct machine_view *view, const struct fovea *fovea,
                         const struct recorder *recorder, struct store_frame *row, char *error,
@@ -153,25 +204,24 @@ static bool draw_option(struct show *show, const struct machine_view *view, cons
 {
     struct fovea_use use;
     struct frame_stats stats;
-    enum store_fovea source = follow(show, fovea, row->start_ns, &use);
+    enum store_fovea source = follow(show, view, fovea, row->start_ns, &use);
     struct frame frame = stage_frame(show->desc->stage, view, show->number, &use, &row->head_pose);
     struct renderer_option *option = stage_option(show->desc->stage, view->slot);
     memset(&stats, 0, sizeof stats);
-    frame.gaze_returned = source != STORE_FOVEA_FIXED && fovea_returned(&show->gaze_lost, &use);
+    bool gaze = source == STORE_FOVEA_GAZE || source == STORE_FOVEA_LOST;
+    frame.gaze_returned = gaze && fovea_returned(&show->gaze_lost, &use);
     if (!option || !renderer_draw(option, &frame, &stats)) {
         snprintf(error, error_size, "the GPU could not draw frame %llu", (unsigned long long)show->number);
         return false;
     }
     int64_t condition_id = recorder_condition(recorder, view->trial, view->slot);
-    bool is_reference = condition_id == show->desc->reference_id;
-    if (show->measure && !is_reference && measure_due(show->measure, view) &&
-        !measure_take(show->measure, (uint32_t)view->condition, scene_index(show, view->trial_index), option,
-                      stage_reference(show->desc->stage), &frame)) {
+    if (!measure_option(show, view, option, &frame)) {
         snprintf(error, error_size, "the image error of frame %llu could not be measured",
                  (unsigned long long)show->number);
         return false;
     }
     tell_redraw(show, view, recorder, row->start_ns, stats.redraw);
+    row->effective = stage_effective(show->desc->stage, view->slot);
     fill_fovea(&use, source, row);
     row->condition_id = condition_id;
     row->cpu_us = stats.cpu_ms * 1e3;
@@ -245,6 +295,7 @@ bool show_frame(struct show *show, const struct machine_view *view, const struct
     struct renderer_option *option = NULL;
     bool visible = view->screen == MACHINE_STIMULUS && view->slot != PLAN_SLOT_NONE && view->fade < 1.0;
     if (visible) {
+        stage_adjust(show->desc->stage, view);
         if (!draw_option(show, view, fovea, recorder, &row, error, error_size))
             return false;
         option = stage_option(show->desc->stage, view->slot);
@@ -252,7 +303,9 @@ bool show_frame(struct show *show, const struct machine_view *view, const struct
     screen_of(view, state, &screen);
     if (display_resized(show->desc->display))
         renderer_resized(show->desc->renderer);
-    if (!overlay_set(&show->overlay, &screen) ||
+    if (view->screen == MACHINE_STIMULUS && view->trial_started)
+        tell_spheres(show, view, recorder, start_ns);
+    if (!lay_marks(show, view, &row) || !overlay_set(&show->overlay, &screen) ||
         !renderer_show(show->desc->renderer, option, visible ? view->fade : 1.0)) {
         snprintf(error, error_size, "frame %llu could not be shown", (unsigned long long)show->number);
         return false;

@@ -27,10 +27,10 @@ bool show_frame(struct show *show, const struct machine_view *view, const struct
                 const struct fovea *fovea, const struct recorder *recorder, int64_t start_ns, char *error,
                 size_t error_size);
 
-// What the measured frames say about a trial's options; 0 where nothing was measured.
-struct observer_errors show_errors(const struct show *show, uint32_t trial);
+// What the measured frames say about the options of the view's trial; 0 where nothing was measured.
+struct observer_errors show_errors(const struct show *show, const struct machine_view *view);
 // Writes the errors of a trial's options into the store.
-bool show_store_errors(const struct show *show, uint32_t trial, char *error, size_t error_size);
+bool show_store_errors(const struct show *show, const struct plan_trial *trial, char *error, size_t error_size);
 // Measures and stores what this participant did not see: each condition of the plan on each other scene, since
 // those who answer without frames may get it there.
 bool show_measure_rest(struct show *show, char *error, size_t error_size);

@@ -1,19 +1,29 @@
 #include "app/session/stage.h"
 
+#include "app/session/live.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { NO_TRIAL = -1 };
+// Which attempt of which trial the stage is set for; of a staircase its level too.
+struct turn {
+    const struct plan_trial *trial; // NULL: none
+    uint32_t place, attempt;
+    double level;
+};
 
 struct stage {
     struct stage_desc desc;
     struct mode_choice reference_choice; // desc.reference points here, where there is one
-    int64_t trial;                       // prepared, or NO_TRIAL
+    struct turn turn;                    // prepared
     struct stage_scene *scene;
     struct renderer_option *options[2];
+    struct mode_choice conditions[2], now[2]; // of the options: as the plan has them, as they are drawn
+    char effective[2][STAGE_EFFECTIVE];       // "" where both are the same
     struct renderer_option *reference;
+    struct targets targets;
     uint64_t uses;
 };
 
@@ -27,7 +37,6 @@ struct stage *stage_create(const struct stage_desc *desc)
         stage->reference_choice = *desc->reference;
         stage->desc.reference = &stage->reference_choice;
     }
-    stage->trial = NO_TRIAL;
     return stage;
 }
 
@@ -39,7 +48,8 @@ static void clear_options(struct stage *stage)
     }
     renderer_option_destroy(stage->reference);
     stage->reference = NULL;
-    stage->trial = NO_TRIAL;
+    targets_finish(&stage->targets);
+    stage->turn.trial = NULL;
 }
 
 static void evict(struct stage_scene *scene)
@@ -53,9 +63,13 @@ void stage_destroy(struct stage *stage)
     if (!stage)
         return;
     clear_options(stage);
-    for (size_t i = 0; i < stage->desc.scene_count; i++)
-        if (stage->desc.scenes[i].resident)
-            evict(&stage->desc.scenes[i]);
+    for (size_t i = 0; i < stage->desc.scene_count; i++) {
+        struct stage_scene *scene = &stage->desc.scenes[i];
+        if (scene->resident)
+            evict(scene);
+        ray_scene_destroy(scene->rays);
+        scene->rays = NULL;
+    }
     free(stage);
 }
 
@@ -109,17 +123,34 @@ static struct renderer_settings render_settings(const struct stage *stage,
                                       .taa = is_on(settings, stage->desc.taa_setting)};
 }
 
-static bool make_option(struct stage *stage, int slot, uint32_t condition,
-                        const struct renderer_settings *settings, char *error, size_t error_size)
+static void note_effective(struct stage *stage, int slot)
 {
-    struct mode_choice choice;
-    if (stage_choice(&stage->desc.plan->conditions[condition], &choice))
+    char *out = stage->effective[slot];
+    if (!live_effective(&stage->conditions[slot], &stage->now[slot], out, sizeof stage->effective[slot]))
+        out[0] = '\0';
+}
+
+// turn NULL: as the condition says.
+static bool make_option(struct stage *stage, int slot, uint32_t condition, const struct turn *turn,
+                        struct renderer_settings settings, char *error, size_t error_size)
+{
+    const struct plan *plan = stage->desc.plan;
+    struct mode_choice *now = &stage->now[slot];
+    if (stage_choice(&plan->conditions[condition], now)) {
+        stage->conditions[slot] = *now;
+        if (turn)
+            live_choice(plan->protocol, turn->trial, (enum plan_slot)slot, turn->level,
+                        turn->trial->adjust_start, now);
+        settings.adjustable =
+            turn && live_adjusts(turn->trial) && turn->trial->test_slot == (enum plan_slot)slot;
         stage->options[slot] =
-            renderer_option_create(stage->desc.renderer, stage->scene->resident, &choice, settings);
+            renderer_option_create(stage->desc.renderer, stage->scene->resident, now, &settings);
+    }
+    note_effective(stage, slot);
     if (stage->options[slot])
         return true;
     snprintf(error, error_size, "the mode '%s' cannot be set up on this device for the scene '%s'",
-             stage->desc.plan->conditions[condition].mode, stage->scene->name);
+             plan->conditions[condition].mode, stage->scene->name);
     return false;
 }
 
@@ -147,22 +178,85 @@ static bool enter_scene(struct stage *stage, struct stage_scene *scene, const ch
     return false;
 }
 
-bool stage_prepare(struct stage *stage, uint32_t trial, char *error, size_t error_size)
+static bool prepare_targets(struct stage *stage, const struct plan_trial *trial, char *error, size_t error_size)
 {
-    const struct plan_trial *planned = &stage->desc.plan->trials[trial];
-    if (stage->trial == (int64_t)trial)
+    struct stage_scene *scene = stage->scene;
+    if (!targets_needed(trial))
         return true;
-    const struct renderer_settings settings = render_settings(stage, planned->resolved);
-    bool done = enter_scene(stage, find_scene(stage, planned->scene), planned->scene, error, error_size);
+    if (!scene->rays)
+        scene->rays = ray_scene_create(scene->scene);
+    if (scene->rays && targets_prepare(&stage->targets, &(struct targets_desc){.trial = trial,
+                                                                               .rays = scene->rays,
+                                                                               .path = &scene->scene->path,
+                                                                               .fov = stage->desc.fov,
+                                                                               .ipd_m = stage->desc.ipd_m}))
+        return true;
+    snprintf(error, error_size, "there is no memory for the targets of trial %u", trial->ordinal);
+    return false;
+}
+
+// An attempt begins with its stimulus; before that the view still counts the one before.
+static struct turn turn_of(const struct machine_view *view)
+{
+    return (struct turn){view->trial, view->trial_index,
+                         view->attempt + (view->screen == MACHINE_STIMULUS ? 0 : 1), view->level};
+}
+
+static bool same_turn(const struct turn *a, const struct turn *b)
+{
+    return a->trial == b->trial && a->place == b->place && a->attempt == b->attempt && !(a->level < b->level) &&
+           !(a->level > b->level);
+}
+
+bool stage_prepare(struct stage *stage, const struct machine_view *view, char *error, size_t error_size)
+{
+    const struct turn turn = turn_of(view);
+    const struct plan_trial *trial = turn.trial;
+    if (same_turn(&stage->turn, &turn))
+        return true;
+    const struct renderer_settings settings = render_settings(stage, trial->resolved);
+    bool done = enter_scene(stage, find_scene(stage, trial->scene), trial->scene, error, error_size);
     for (int slot = 0; done && slot < 2; slot++)
-        if (planned->option[slot] >= 0)
-            done = make_option(stage, slot, (uint32_t)planned->option[slot], &settings, error, error_size);
-    done = done && make_reference(stage, &settings, error, error_size);
+        if (trial->option[slot] >= 0)
+            done = make_option(stage, slot, (uint32_t)trial->option[slot], &turn, settings, error, error_size);
+    done = done && make_reference(stage, &settings, error, error_size) &&
+           prepare_targets(stage, trial, error, error_size);
     if (done)
-        stage->trial = (int64_t)trial;
+        stage->turn = turn;
     else
         clear_options(stage);
     return done;
+}
+
+void stage_adjust(struct stage *stage, const struct machine_view *view)
+{
+    const struct plan_trial *trial = stage->turn.trial;
+    if (!trial || !view->adjusted)
+        return;
+    for (int slot = 0; slot < 2; slot++) {
+        struct mode_choice wanted = stage->conditions[slot];
+        live_choice(stage->desc.plan->protocol, trial, (enum plan_slot)slot, NAN, view->adjusted, &wanted);
+        if (!stage->options[slot] || live_same(&wanted, &stage->now[slot]) ||
+            !renderer_option_set(stage->options[slot], &wanted))
+            continue;
+        stage->now[slot] = wanted;
+        note_effective(stage, slot);
+    }
+}
+
+const struct mode_choice *stage_now(const struct stage *stage, enum plan_slot slot)
+{
+    return slot == PLAN_SLOT_NONE || !stage->options[slot] ? NULL : &stage->now[slot];
+}
+
+const char *stage_effective(const struct stage *stage, enum plan_slot slot)
+{
+    return slot == PLAN_SLOT_NONE || !stage->effective[slot][0] ? NULL : stage->effective[slot];
+}
+
+const struct targets *stage_targets(const struct stage *stage)
+{
+    return &stage->targets;
 }
 
 // Those of the first trial that shows the condition; as in any trial that does, where all agree.
@@ -182,7 +276,7 @@ bool stage_prepare_condition(struct stage *stage, uint32_t condition, size_t sce
     const struct renderer_settings settings = settings_of_condition(stage, condition);
     struct stage_scene *wanted = &stage->desc.scenes[scene];
     bool done = enter_scene(stage, wanted, wanted->name, error, error_size) &&
-                make_option(stage, PLAN_SLOT_A, condition, &settings, error, error_size) &&
+                make_option(stage, PLAN_SLOT_A, condition, NULL, settings, error, error_size) &&
                 make_reference(stage, &settings, error, error_size);
     if (!done)
         clear_options(stage);
@@ -205,8 +299,7 @@ struct frame stage_frame(const struct stage *stage, const struct machine_view *v
     const struct protocol_settings *settings = view->trial->resolved;
     double time_s = (double)view->stimulus_ns * 1e-9;
     const bool moving = is_on(settings, stage->desc.moving_setting);
-    *out_head =
-        camera_path_pose(&stage->scene->scene->path, settings->camera == PROTOCOL_CAMERA_STILL ? 0.0 : time_s);
+    *out_head = targets_head(view->trial, &stage->scene->scene->path, time_s);
     struct frame frame = {
         .number = number,
         .moving = moving,

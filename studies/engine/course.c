@@ -158,12 +158,17 @@ uint32_t course_next(const struct machine *machine)
     return place;
 }
 
+double course_level(const struct machine *machine, uint32_t place)
+{
+    const struct course_staircase *staircase = staircase_of(machine, machine_trial(machine, place));
+    return staircase ? staircase_level(staircase->staircase) : (double)NAN;
+}
+
 void course_begin(struct machine *machine)
 {
     const struct plan_trial *trial = machine_running(machine);
-    const struct course_staircase *staircase = staircase_of(machine, trial);
     machine->screen = MACHINE_STIMULUS;
-    machine->level = staircase ? staircase_level(staircase->staircase) : NAN;
+    machine->level = course_level(machine, machine->trial);
     machine->adjusting = 0;
     memcpy(machine->adjusted, trial->adjust_start, sizeof machine->adjusted);
     stimulus_begin(machine);

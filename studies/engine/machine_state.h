@@ -84,6 +84,8 @@ bool course_create(struct machine *machine, const struct machine_start *start);
 void course_destroy(struct machine *machine);
 uint32_t course_next(const struct machine *machine); // the first place that is not done; course_places: none
 void course_begin(struct machine *machine);          // the trial at machine.trial
+double course_level(const struct machine *machine,
+                    uint32_t place); // of its staircase, if it came now; NaN: none
 // Towards the first trial that is left: its block's beginning where that is new, a break where one is due, else
 // REST.
 void course_go_on(struct machine *machine, enum machine_screen same_block);

@@ -66,13 +66,12 @@ until [ "$(xdotool search --name '^fovstudy$' 2>/dev/null | wc -l)" -ge 1 ] || [
 done
 xdotool mousemove 64 72
 key() { xdotool key --delay 0 "$@" 2>/dev/null; }
-key y
 tries=0
 # Whatever is on the screen, one of these is the next thing to do; what does not fit is not taken.
 while kill -0 $program 2>/dev/null; do
     tries=$((tries + 1))
     [ $tries -gt 4000 ] && fail "the session did not come to its end"
-    key Return space
+    key y Return space
     sleep 0.15
     key Left 2 Return
     sleep 0.1
