@@ -18,7 +18,7 @@ void live_choice(const struct protocol *protocol, const struct plan_trial *trial
     if (slot != trial->test_slot)
         return;
     if (trial->kind == PROTOCOL_STAIRCASE && !isnan(level))
-        choice->values[block->staircase.parameter] = level;
+        choice->values[block->staircase.parameter] = plan_level(level);
     for (uint32_t i = 0; live_adjusts(trial) && adjusted && i < block->adjust_count; i++)
         choice->values[block->adjusts[i].parameter] = adjusted[i];
 }

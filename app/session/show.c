@@ -221,7 +221,8 @@ static bool draw_option(struct show *show, const struct machine_view *view, cons
         return false;
     }
     tell_redraw(show, view, recorder, row->start_ns, stats.redraw);
-    row->effective = stage_effective(show->desc->stage, view->slot);
+    // A staircase trial has a condition for its level; what somebody adjusts has none.
+    row->effective = view->adjusted ? stage_effective(show->desc->stage, view->slot) : NULL;
     fill_fovea(&use, source, row);
     row->condition_id = condition_id;
     row->cpu_us = stats.cpu_ms * 1e3;

@@ -25,13 +25,18 @@ const char *plan_trial_kind(const struct plan_trial *trial)
     return trial->role == PROTOCOL_MAIN ? protocol_kind_name(trial->kind) : protocol_role_name(trial->role);
 }
 
+double plan_level(double level)
+{
+    char digits[32];
+    snprintf(digits, sizeof digits, "%.9g", level);
+    return strtod(digits, NULL);
+}
+
 struct protocol_option plan_level_option(const struct plan *plan, const struct plan_trial *trial, double level)
 {
     const struct protocol_block *block = &plan->protocol->blocks[trial->block];
     struct protocol_option option = block->cells[trial->cell].option[0];
-    char digits[32];
-    snprintf(digits, sizeof digits, "%.9g", level);
-    option.values[block->staircase.parameter] = strtod(digits, NULL);
+    option.values[block->staircase.parameter] = plan_level(level);
     return option;
 }
 

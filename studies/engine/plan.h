@@ -74,8 +74,10 @@ struct plan {
 struct plan *plan_create(const struct protocol *protocol, uint64_t seed, uint32_t number);
 void plan_destroy(struct plan *plan); // NULL is fine
 
-// The option under test of a staircase trial at a level, rounded to 9 digits: levels reached by adding steps
-// differ in their last ones and are the same condition.
+// A staircase's level as it is shown, rounded to 9 digits: levels reached by adding steps differ in their last
+// ones and are the same condition.
+double plan_level(double level);
+// The option under test of a staircase trial at a level.
 struct protocol_option plan_level_option(const struct plan *plan, const struct plan_trial *trial, double level);
 
 // SHA-256 over every column of every trial and condition, as text: what golden tables and resume compare.
