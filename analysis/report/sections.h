@@ -2,6 +2,7 @@
 #ifndef ANALYSIS_REPORT_SECTIONS_H
 #define ANALYSIS_REPORT_SECTIONS_H
 
+#include "analysis/report/checks.h"
 #include "analysis/report/choices.h"
 #include "analysis/report/frames.h"
 #include "analysis/report/ratings.h"
@@ -15,6 +16,12 @@ struct figure_pair {
     char *wide, *narrow; // NULL where there is nothing to draw
 };
 
+// The tests under other exclusions than those that hold.
+struct report_tests {
+    struct choices choices;
+    struct ratings ratings;
+};
+
 struct report {
     FILE *out;
     struct sample *sample;
@@ -22,6 +29,8 @@ struct report {
     struct choices choices;
     struct ratings ratings;
     struct frames frames;
+    struct checks checks;
+    struct report_tests all, stricter; // without any exclusion; with those of the set 'stricter' too
     struct figure_pair choices_figure, frames_figure, ratings_figures[REPORT_QUESTIONS];
 };
 
@@ -32,6 +41,8 @@ void report_choices(const struct report *r);
 void report_toggles(const struct report *r);
 void report_ratings(const struct report *r);
 void report_frames(const struct report *r);
+void report_checks(const struct report *r);  // null and catch trials
+void report_what_if(const struct report *r); // the same tests under other exclusions
 bool report_quality(const struct report *r, char *error, size_t error_size);
 void report_definitions(const struct report *r);
 

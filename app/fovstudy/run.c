@@ -1,6 +1,7 @@
 // `fovstudy run`: joins protocol, display, renderer, gaze and store, and runs one session.
 #include "app/command/options.h"
 #include "app/fovstudy/commands.h"
+#include "app/fovstudy/rules.h"
 #include "app/fovstudy/run_study.h"
 #include "app/session/session.h"
 
@@ -147,6 +148,16 @@ static enum session_result go(struct run *run, char *error, size_t error_size)
     return result;
 }
 
+// A session that failed may go on; its rules are applied when it ends, or by `fovstudy exclude`.
+static void apply_rules(struct run *run)
+{
+    char why[RUN_ERROR] = "";
+    if (!rules_end_session(run->rows.store, run->options.database, run->study.protocol, &run->rows.ids, why,
+                           sizeof why))
+        fprintf(stderr, "fovstudy: the exclusion rules are not applied yet (%s); fovstudy exclude does it\n",
+                why);
+}
+
 static void finish(struct run *run)
 {
     stage_destroy(run->stage);
@@ -168,6 +179,8 @@ int command_run(int argc, char **argv)
     enum session_result result = SESSION_FAILED;
     if (run_study_init(&run.study, &run.options, error, sizeof error) && prepare(&run, error, sizeof error))
         result = go(&run, error, sizeof error);
+    if (result != SESSION_FAILED)
+        apply_rules(&run);
     if (!run_rows_finish(&run.rows, late, sizeof late) && result != SESSION_FAILED) {
         snprintf(error, sizeof error, "%s", late);
         result = SESSION_FAILED;
