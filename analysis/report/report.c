@@ -158,6 +158,7 @@ static bool load(struct report *r, char *error, size_t error_size)
            ratings_load(&r->ratings, r->sample, r->conf, error, error_size) &&
            checks_load(&r->checks, r->sample, r->conf, error, error_size) &&
            frames_load(&r->frames, r->sample, error, error_size) &&
+           audit_load(&r->audit, r->sample, error, error_size) &&
            (r->sample->exclusion_count == 0 ||
             (load_tests(&r->all, r, SAMPLE_ALL_DATA, error, error_size) &&
              load_tests(&r->stricter, r, SAMPLE_STRICTER, error, error_size)));
@@ -199,6 +200,7 @@ bool report_write(struct sample *sample, double conf, const char *path, char *er
     ratings_free(&r.ratings);
     frames_free(&r.frames);
     checks_free(&r.checks);
+    audit_free(&r.audit);
     free_tests(&r.all);
     free_tests(&r.stricter);
     free(temporary);

@@ -201,7 +201,10 @@ bool report_quality(const struct report *r, char *error, size_t error_size)
     left_out(r);
     exclusions_table(r);
     report_what_if(r);
-    return sessions_table(r, error, error_size);
+    if (!sessions_table(r, error, error_size))
+        return false;
+    report_audit(r);
+    return true;
 }
 
 void report_definitions(const struct report *r)

@@ -2,6 +2,7 @@
 #ifndef ANALYSIS_REPORT_SECTIONS_H
 #define ANALYSIS_REPORT_SECTIONS_H
 
+#include "analysis/report/audit.h"
 #include "analysis/report/checks.h"
 #include "analysis/report/choices.h"
 #include "analysis/report/frames.h"
@@ -30,6 +31,7 @@ struct report {
     struct ratings ratings;
     struct frames frames;
     struct checks checks;
+    struct audit audit;
     struct report_tests all, stricter; // without any exclusion; with those of the set 'stricter' too
     struct figure_pair choices_figure, frames_figure, ratings_figures[REPORT_QUESTIONS];
 };
@@ -44,6 +46,7 @@ void report_frames(const struct report *r);
 void report_checks(const struct report *r);  // null and catch trials
 void report_what_if(const struct report *r); // the same tests under other exclusions
 bool report_quality(const struct report *r, char *error, size_t error_size);
+void report_audit(const struct report *r); // every frame accounted for
 void report_definitions(const struct report *r);
 
 // Both widths of a figure and its caption, which is HTML.

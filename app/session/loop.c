@@ -227,6 +227,21 @@ static void linger(struct loop *loop, const struct machine_view *last)
         failed = !present(loop, &view, now_ns(loop));
 }
 
+// What the rows of `frame` are held against: a segment without this event did not end by itself.
+static void tell_submitted(const struct session_desc *desc, const struct show *show)
+{
+    char detail[64];
+    if (!desc->display)
+        return;
+    snprintf(detail, sizeof detail, "{\"frames\":%" PRIu64 "}", show->number);
+    store_push_event(desc->store,
+                     &(struct store_event){.session_id = desc->ids->session_id,
+                                           .segment_id = desc->ids->segment_id,
+                                           .at_ns = display_now_ns(desc->display) - desc->origin_ns,
+                                           .kind = "frames_submitted",
+                                           .detail = detail});
+}
+
 enum session_result session_run(const struct session_desc *desc, char *error, size_t error_size)
 {
     struct machine_start start = {0};
@@ -255,6 +270,7 @@ enum session_result session_run(const struct session_desc *desc, char *error, si
         if (!failed && view.complete && desc->display)
             failed = !show_measure_rest(&loop.show, error, error_size);
     }
+    tell_submitted(desc, &loop.show);
     show_finish(&loop.show);
     machine_destroy(loop.machine);
     if (failed)
