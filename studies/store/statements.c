@@ -1,9 +1,10 @@
 #include "studies/store/statements.h"
 
-// People excluded as a whole free their number.
+// People excluded as a whole free their number; those out by a stricter rule only are part of the analysis.
 #define HELD                                                                                                   \
     "WITH held (number) AS (SELECT number FROM participant AS p "                                              \
-    "WHERE NOT EXISTS (SELECT 1 FROM exclusion AS e WHERE e.participant_id = p.id)) "
+    "WHERE NOT EXISTS (SELECT 1 FROM exclusion AS e WHERE e.participant_id = p.id AND e.rule_set <> "          \
+    "'stricter')) "
 
 const char *const sql_statements[SQL_STATEMENTS] = {
     [SQL_BEGIN] = "BEGIN IMMEDIATE",

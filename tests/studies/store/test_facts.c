@@ -216,6 +216,33 @@ static void test_twice_changes_nothing(void **state)
     assert_int_equal(query(path, "SELECT count(*) FROM event WHERE kind = 'rules_applied'"), 3);
 }
 
+// A stricter rule is for a table of the report: the person is analysed, and the number is taken.
+static void test_stricter_rules_free_no_number(void **state)
+{
+    const char *path = ((struct fixture *)*state)->path;
+    struct fixture_session session;
+    struct store_error error;
+    int64_t number = 0;
+    size_t added = 0;
+    struct store *store = fixture_open(path, STORE_CREATE);
+    struct store_exclusion row = {.participant_id = 1,
+                                  .rule = "gaze_loss",
+                                  .rule_set = "stricter",
+                                  .reason = "r",
+                                  .by = "b",
+                                  .applied_at = "t"};
+    expect_result(fixture_create(store, "p1", 1, &session, &error), STORE_OK, &error);
+    expect_result(store_apply_exclusions(store, &row, 1, NULL, 0, &added, &error), STORE_OK, &error);
+    expect_result(store_participant_number(store, "p2", 0, &number, &error), STORE_OK, &error);
+    assert_int_equal(number, 2);
+    row.rule_set = "late";
+    expect_result(store_apply_exclusions(store, &row, 1, NULL, 0, &added, &error), STORE_OK, &error);
+    expect_result(store_participant_number(store, "p2", 0, &number, &error), STORE_OK, &error);
+    assert_int_equal(number, 1);
+    expect_result(fixture_create(store, "p2", 1, &session, &error), STORE_OK, &error);
+    fixture_close(store);
+}
+
 // People of 96 trials of eight seconds, gaze at 250 Hz in two alternating eyes' rows, frames at 90 Hz.
 // FACTS_PEOPLE=52 is the size of a whole study: 10^7 rows of gaze.
 static double seconds_for(const char *path, int people)
@@ -302,6 +329,7 @@ int main(void)
                                         fixture_teardown),
         cmocka_unit_test_setup_teardown(test_catch_trials, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(test_twice_changes_nothing, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(test_stricter_rules_free_no_number, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(test_a_whole_study_takes_seconds, fixture_setup, fixture_teardown),
     };
     return cmocka_run_group_tests_name("store facts", tests, NULL, NULL);
