@@ -162,7 +162,8 @@ static bool draw_option(struct show *show, const struct machine_view *view, cons
         snprintf(error, error_size, "the GPU could not draw frame %llu", (unsigned long long)show->number);
         return false;
     }
-    bool is_reference = show->desc->ids->condition_ids[view->condition] == show->desc->reference_id;
+    int64_t condition_id = recorder_condition(recorder, view->trial, view->slot);
+    bool is_reference = condition_id == show->desc->reference_id;
     if (show->measure && !is_reference && measure_due(show->measure, view) &&
         !measure_take(show->measure, (uint32_t)view->condition, scene_index(show, view->trial_index), option,
                       stage_reference(show->desc->stage), &frame)) {
@@ -172,7 +173,7 @@ static bool draw_option(struct show *show, const struct machine_view *view, cons
     }
     tell_redraw(show, view, recorder, row->start_ns, stats.redraw);
     fill_fovea(&use, source, row);
-    row->condition_id = show->desc->ids->condition_ids[view->condition];
+    row->condition_id = condition_id;
     row->cpu_us = stats.cpu_ms * 1e3;
     row->gpu_us = stats.gpu_ms * 1e3;
     row->shaded_px = (int64_t)stats.shaded_px;
@@ -218,6 +219,8 @@ static void time_row(struct show *show, struct store_frame *row)
     struct display *display = show->desc->display;
     double refresh_ns = display->refresh_hz > 0.0 ? 1e9 / display->refresh_hz : NAN;
     row->present_estimated = true;
+    show->frame_ms = NAN;
+    show->late = false;
     if (display->simulated_clock) {
         row->present_ns = row->start_ns + (int64_t)llround(refresh_ns);
         return;
@@ -227,6 +230,9 @@ static void time_row(struct show *show, struct store_frame *row)
     if (!isnan(refresh_ns))
         row->late =
             show->last_present_ns >= 0 && (double)(row->present_ns - show->last_present_ns) > 1.5 * refresh_ns;
+    if (show->last_present_ns >= 0)
+        show->frame_ms = (double)(row->present_ns - show->last_present_ns) * 1e-6;
+    show->late = row->late == 1;
     show->last_present_ns = row->present_ns;
 }
 
@@ -256,4 +262,18 @@ bool show_frame(struct show *show, const struct machine_view *view, const struct
     store_push_frame(show->desc->store, &row); // what does not fit is counted and reported by the store
     show->number++;
     return true;
+}
+
+void show_tell_submitted(const struct show *show)
+{
+    char detail[64];
+    if (!show->desc || !show->desc->display)
+        return;
+    snprintf(detail, sizeof detail, "{\"frames\":%llu}", (unsigned long long)show->number);
+    store_push_event(show->desc->store,
+                     &(struct store_event){.session_id = show->desc->ids->session_id,
+                                           .segment_id = show->desc->ids->segment_id,
+                                           .at_ns = display_now_ns(show->desc->display) - show->desc->origin_ns,
+                                           .kind = "frames_submitted",
+                                           .detail = detail});
 }
