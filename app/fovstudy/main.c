@@ -13,6 +13,7 @@ static const struct {
     {"run", "run a protocol with a participant and record it", command_run},
     {"resume", "go on with an interrupted session", command_resume},
     {"check", "check a protocol and print a participant's trials, without a GPU", command_check},
+    {"exclude", "apply exclusion rules, take out by hand, list what is out", command_exclude},
     {"modes", "list the rendering modes with their parameters", command_modes},
     {"scenes", "list the built-in scenes with their parameters", command_scenes},
     {"render", "walk a camera path and write pictures", command_render},

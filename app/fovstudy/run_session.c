@@ -1,6 +1,7 @@
 #include "app/fovstudy/run_session.h"
 
 #include "app/command/options.h"
+#include "app/fovstudy/rules.h"
 
 #include <inttypes.h>
 #include <signal.h>
@@ -98,6 +99,16 @@ static void note_unblind(const struct run *run)
                                                .detail = "the options were named on the terminal"});
 }
 
+// A session that failed may go on; its rules are applied when it ends, or by `fovstudy exclude`.
+static void apply_rules(const struct run *run)
+{
+    char why[RUN_ERROR] = "";
+    if (!rules_end_session(run->rows.store, run->options.database, run->study.protocol, &run->rows.ids, why,
+                           sizeof why))
+        fprintf(stderr, "fovstudy: the exclusion rules are not applied yet (%s); fovstudy exclude does it\n",
+                why);
+}
+
 enum session_result run_go(struct run *run, const struct machine_start *start, char *error, size_t error_size)
 {
     const struct run_options *options = &run->options;
@@ -142,6 +153,8 @@ enum session_result run_go(struct run *run, const struct machine_start *start, c
     // A renderer's sentence says more than that a frame failed.
     if (result == SESSION_FAILED && run->view.renderer_error[0])
         snprintf(error, error_size, "%s", run->view.renderer_error);
+    if (result != SESSION_FAILED)
+        apply_rules(run);
     return result;
 }
 

@@ -441,6 +441,7 @@ enum session_result session_run(const struct session_desc *desc, char *error, si
     uint32_t places = desc->plan->trial_count + (desc->start ? desc->start->repeat_count : 0);
     bool good = recorder_init(&loop.recorder, places) && (!desc->display || show_init(&loop.show, desc)) &&
                 run(&loop, &view);
+    show_tell_submitted(&loop.show);
     show_finish(&loop.show);
     recorder_finish(&loop.recorder);
     machine_destroy(loop.machine);

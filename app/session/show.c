@@ -317,3 +317,17 @@ bool show_frame(struct show *show, const struct machine_view *view, const struct
     show->number++;
     return true;
 }
+
+void show_tell_submitted(const struct show *show)
+{
+    char detail[64];
+    if (!show->desc || !show->desc->display)
+        return;
+    snprintf(detail, sizeof detail, "{\"frames\":%llu}", (unsigned long long)show->number);
+    store_push_event(show->desc->store,
+                     &(struct store_event){.session_id = show->desc->ids->session_id,
+                                           .segment_id = show->desc->ids->segment_id,
+                                           .at_ns = display_now_ns(show->desc->display) - show->desc->origin_ns,
+                                           .kind = "frames_submitted",
+                                           .detail = detail});
+}

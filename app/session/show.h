@@ -21,6 +21,9 @@ struct show {
 // False: out of memory.
 bool show_init(struct show *show, const struct session_desc *desc);
 void show_finish(struct show *show);
+// At the end of a segment, an event of how many frames were submitted: the rows of `frame` are held against it,
+// and a segment without it did not end by itself.
+void show_tell_submitted(const struct show *show);
 
 // False with a sentence. `recorder` says which trial runs.
 bool show_frame(struct show *show, const struct machine_view *view, const struct screen_state *state,
