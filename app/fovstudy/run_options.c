@@ -1,6 +1,7 @@
 #include "app/fovstudy/run_options.h"
 
 #include "app/command/options.h"
+#include "app/display/display.h"
 #include "stimuli/viewing.h"
 
 #include <stdlib.h>
@@ -22,8 +23,13 @@ enum option {
     ATTRIBUTE,
     EVENTS,
     UNBLIND,
+    PATIENCE,
+    AGAIN,    // run only
+    PROTOCOL, // resume only
     OPTIONS
 };
+
+#define UNATTENDED_PATIENCE_S 600.0
 
 static const struct option_spec specs[OPTIONS + 1] = {
     [DB] = {"db", "FILE", "the study file; made where there is none"},
@@ -41,8 +47,18 @@ static const struct option_spec specs[OPTIONS + 1] = {
     [ATTRIBUTE] = {"attribute", "k=v", "what the protocol asks about the participant; repeatable"},
     [EVENTS] = {"events", "FILE|-", "one JSON object a line on what happens"},
     [UNBLIND] = {"unblind", NULL, "name the options on the terminal (logged)"},
+    [PATIENCE] = {"patience", "S", "seconds to wait for a full disk; else for ever, with --observer 600"},
+    [AGAIN] = {"again", NULL, "run: the participant may have an earlier session in this file"},
+    [PROTOCOL] = {"protocol", "FILE|-", "resume: this file must be the session's protocol; -: look at none"},
     [OPTIONS] = {NULL, NULL, NULL},
 };
+
+static const char about_resume[] =
+    "Goes on with a session that was interrupted: the one of that number, else the last unfinished one.\n"
+    "Display, size, field of view, gaze, scenes and observer are those it was started with; options that\n"
+    "differ are refused, since they would change the conditions. The interrupted trial begins anew; what was\n"
+    "answered stays. A protocol file that was changed since is refused; --protocol - goes on with the text\n"
+    "that the study file holds.";
 
 static const char about[] =
     "Runs a session and records it. Keys of the participant: Space switches, Left or 1 chooses A,\n"
@@ -54,9 +70,14 @@ static const char about[] =
     "left in the study file, else from that file: lines of SCENE,ERROR,MODE[:p=v,...], ERROR the\n"
     "eccentricity-weighted RMSE against the reference, 0 to 1.";
 
-static int wrong_value(enum option option, const char *value, const char *want)
+static const char *command_name(const struct run_options *out)
 {
-    return options_wrong("fovstudy run", "--%s '%s' is not right: %s", specs[option].name, value, want);
+    return out->resume ? "fovstudy resume" : "fovstudy run";
+}
+
+static int wrong_value(const struct run_options *out, enum option option, const char *value, const char *want)
+{
+    return options_wrong(command_name(out), "--%s '%s' is not right: %s", specs[option].name, value, want);
 }
 
 static int set_numbers(struct run_options *out, enum option option, const char *value)
@@ -64,22 +85,26 @@ static int set_numbers(struct run_options *out, enum option option, const char *
     switch (option) {
     case SEED:
         out->has_seed = options_uint64(value, 0, INT64_MAX, &out->seed);
-        return out->has_seed ? -1 : wrong_value(option, value, "a whole number from 0 to 2^63-1");
+        return out->has_seed ? -1 : wrong_value(out, option, value, "a whole number from 0 to 2^63-1");
     case NUMBER:
         out->has_number = options_uint64(value, 1, 1000000, &out->number);
-        return out->has_number ? -1 : wrong_value(option, value, "a whole number from 1 to 1000000");
+        return out->has_number ? -1 : wrong_value(out, option, value, "a whole number from 1 to 1000000");
     case SIZE:
         return options_size(value, &out->width, &out->height)
                    ? -1
-                   : wrong_value(option, value, "WIDTHxHEIGHT, each from 16 to 16384");
+                   : wrong_value(out, option, value, "WIDTHxHEIGHT, each from 16 to 16384");
     case FOV:
         return options_double(value, 1.0, 170.0, &out->fov_deg)
                    ? -1
-                   : wrong_value(option, value, "degrees, 1 to 170");
+                   : wrong_value(out, option, value, "degrees, 1 to 170");
+    case PATIENCE:
+        return options_double(value, 0.1, 1e6, &out->patience_s)
+                   ? -1
+                   : wrong_value(out, option, value, "0.1 s or more");
     default:
         return options_double(value, 1.0, 1000.0, &out->refresh_hz)
                    ? -1
-                   : wrong_value(option, value, "1 to 1000 Hz");
+                   : wrong_value(out, option, value, "1 to 1000 Hz");
     }
 }
 
@@ -89,20 +114,43 @@ static int set_lists(struct run_options *out, enum option option, const char *va
     if (option == SCENE)
         return study_bind_scene(out->scenes, &out->scene_count, value, error, sizeof error)
                    ? -1
-                   : options_wrong("fovstudy run", "%s", error);
+                   : options_wrong(command_name(out), "%s", error);
     if (out->attribute_count == RUN_ATTRIBUTES || !strchr(value, '='))
-        return wrong_value(option, value, "NAME=VALUE, as the protocol's participant section names them");
+        return wrong_value(out, option, value, "NAME=VALUE, as the protocol's participant section names them");
     out->attributes[out->attribute_count++] = value;
+    return -1;
+}
+
+static int set_word(struct run_options *out, const char *value)
+{
+    uint64_t id = 0;
+    if (!out->resume && out->protocol)
+        return options_wrong("fovstudy run", "one protocol at a time, not also '%s'", value);
+    if (!out->resume) {
+        out->protocol = value;
+        return -1;
+    }
+    if (out->session)
+        return options_wrong("fovstudy resume", "one session at a time, not also '%s'", value);
+    if (!options_uint64(value, 1, INT64_MAX, &id))
+        return options_wrong("fovstudy resume", "'%s' is no session; it is the number that 'run' gave it",
+                             value);
+    out->session = (int64_t)id;
     return -1;
 }
 
 static int set(struct run_options *out, int option, const char *value)
 {
+    if (option == (out->resume ? AGAIN : PROTOCOL))
+        return options_wrong(command_name(out), "there is no option '--%s' here", specs[option].name);
     switch (option) {
     case OPTIONS_WORD:
-        if (out->protocol)
-            return options_wrong("fovstudy run", "one protocol at a time, not also '%s'", value);
+        return set_word(out, value);
+    case PROTOCOL:
         out->protocol = value;
+        return -1;
+    case AGAIN:
+        out->again = true;
         return -1;
     case DB:
         out->database = value;
@@ -136,29 +184,61 @@ static int set(struct run_options *out, int option, const char *value)
     }
 }
 
-static int check(const struct run_options *out)
+double run_step_hz(const struct run_options *options)
 {
-    if (!out->protocol)
-        return options_wrong("fovstudy run", "which protocol? name its file");
-    if (!out->database)
-        return options_wrong("fovstudy run", "where to? give --db FILE");
-    if (!out->participant || !*out->participant)
-        return options_wrong("fovstudy run", "who takes part? give --participant CODE");
-    bool blind = strcmp(out->display, "headless") == 0 || strcmp(out->display, "none") == 0;
-    if (blind && !out->observer)
-        return options_wrong("fovstudy run", "nobody can answer with --display %s; give --observer sim",
-                             out->display);
+    return options->refresh_hz > 0.0 ? options->refresh_hz : DISPLAY_HEADLESS_HZ;
+}
+
+void run_options_patience(struct run_options *options)
+{
+    if (options->observer && !(options->patience_s > 0.0))
+        options->patience_s = UNATTENDED_PATIENCE_S;
+}
+
+static int answerable(const struct run_options *options)
+{
+    bool blind = strcmp(options->display, "headless") == 0 || strcmp(options->display, "none") == 0;
+    if (blind && !options->observer)
+        return options_wrong(command_name(options), "nobody can answer with --display %s; give --observer sim",
+                             options->display);
     return -1;
 }
 
-int run_options_read(struct run_options *out, int argc, char **argv)
+static int check(struct run_options *out)
+{
+    if (!out->resume && !out->protocol)
+        return options_wrong("fovstudy run", "which protocol? name its file");
+    if (!out->database)
+        return options_wrong(command_name(out),
+                             out->resume ? "of which study? give --db FILE" : "where to? give --db FILE");
+    if (out->resume)
+        return -1;
+    if (!out->participant || !*out->participant)
+        return options_wrong("fovstudy run", "who takes part? give --participant CODE");
+    if (!out->display)
+        out->display = "window";
+    if (!(out->fov_deg > 0.0))
+        out->fov_deg = VIEWING_DEFAULT_FOV_DEG;
+    run_options_patience(out);
+    return answerable(out);
+}
+
+static void help(bool resume)
+{
+    if (resume)
+        options_help(stdout, "fovstudy resume --db FILE [SESSION] [options]", about_resume, specs);
+    else
+        options_help(stdout, "fovstudy run PROTOCOL --db FILE --participant CODE [options]", about, specs);
+}
+
+int run_options_read(struct run_options *out, bool resume, int argc, char **argv)
 {
     struct options options;
-    *out = (struct run_options){.display = "window", .fov_deg = VIEWING_DEFAULT_FOV_DEG};
-    options_start(&options, argc, argv, "fovstudy run", specs);
+    *out = (struct run_options){.resume = resume};
+    options_start(&options, argc, argv, command_name(out), specs);
     for (int i = options_next(&options); i != OPTIONS_DONE; i = options_next(&options)) {
         if (i == OPTIONS_HELP) {
-            options_help(stdout, "fovstudy run PROTOCOL --db FILE --participant CODE [options]", about, specs);
+            help(resume);
             return EXIT_DONE;
         }
         if (i == OPTIONS_ERROR)

@@ -2,9 +2,47 @@
 #include "app/fovstudy/run_study.h"
 #include "app/session/record.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+bool run_rows_plan(struct run_rows *rows, const struct protocol *protocol, uint64_t seed, int64_t number,
+                   char *error, size_t error_size)
+{
+    rows->plan = plan_create(protocol, seed, (uint32_t)(number - 1));
+    if (rows->plan) {
+        rows->ids.condition_ids = calloc(rows->plan->condition_count + 1, sizeof *rows->ids.condition_ids);
+        rows->ids.trial_ids = calloc(rows->plan->trial_count + 1, sizeof *rows->ids.trial_ids);
+    }
+    if (rows->ids.condition_ids && rows->ids.trial_ids)
+        return true;
+    snprintf(error, error_size, "out of memory");
+    return false;
+}
+
+// Before anything is written or shown; store_create_session holds to it as well.
+static bool code_is_free(struct run_rows *rows, const struct run_options *options, char *error,
+                         size_t error_size)
+{
+    struct store_error why;
+    int64_t count = 0, unfinished = 0;
+    if (store_count_sessions(rows->store, options->participant, &count, &unfinished, &why) != STORE_OK) {
+        snprintf(error, error_size, "%s", why.text);
+        return false;
+    }
+    if (count == 0 || options->again)
+        return true;
+    int used = snprintf(
+        error, error_size,
+        "%s: participant %s has a session already; give another code, or --again for a further session",
+        options->database, options->participant);
+    if (unfinished && used > 0 && (size_t)used < error_size)
+        snprintf(error + used, error_size - (size_t)used,
+                 "; session %" PRId64 " is unfinished: fovstudy resume --db '%s' %" PRId64 " goes on with it",
+                 unfinished, options->database, unfinished);
+    return false;
+}
 
 bool run_rows_open(struct run_rows *rows, const struct run_options *options, const struct run_study *study,
                    char *error, size_t error_size)
@@ -14,23 +52,23 @@ bool run_rows_open(struct run_rows *rows, const struct run_options *options, con
     *rows = (struct run_rows){0};
     rows->store = store_open(&(struct store_desc){.path = options->database, .access = STORE_CREATE}, &why);
     int64_t wanted = options->has_number ? (int64_t)options->number : 0;
+    if (rows->store && !code_is_free(rows, options, error, error_size))
+        return false;
     if (!rows->store ||
         store_participant_number(rows->store, options->participant, wanted, &number, &why) != STORE_OK) {
         snprintf(error, error_size, "%s", why.text);
         return false;
     }
     uint64_t seed = options->has_seed ? options->seed : study->protocol->seed;
-    rows->plan = plan_create(study->protocol, seed, (uint32_t)(number - 1));
-    if (!rows->plan) {
-        snprintf(error, error_size, "out of memory");
-        return false;
-    }
-    rows->ids.condition_ids = calloc(rows->plan->condition_count + 1, sizeof *rows->ids.condition_ids);
-    rows->ids.trial_ids = calloc(rows->plan->trial_count + 1, sizeof *rows->ids.trial_ids);
-    if (rows->ids.condition_ids && rows->ids.trial_ids)
-        return true;
-    snprintf(error, error_size, "out of memory");
-    return false;
+    return run_rows_plan(rows, study->protocol, seed, number, error, error_size);
+}
+
+// Absolute, so that it is found from another folder.
+static void json_path(FILE *out, const char *path)
+{
+    char *absolute = realpath(path, NULL);
+    json_string(out, absolute ? absolute : path);
+    free(absolute);
 }
 
 // JSON of how the session was started, beyond the columns of its own.
@@ -54,12 +92,20 @@ static char *settings_json(const struct run_options *options, const struct run_s
                 o->threshold, o->slope, o->lapse, o->side_bias, o->toggles_mean, o->dwell_s, o->dwell_spread,
                 o->rating_mean, o->rating_sd, o->rating_drop, o->view_s, o->answer_s);
     }
+    if (options->observer && study->observer.errors[0]) {
+        fprintf(out, ",\"errors_file\":");
+        json_path(out, study->observer.errors);
+    }
+    if (!view->display)
+        fprintf(out, ",\"step_hz\":%.17g", run_step_hz(options));
+    fprintf(out, ",\"protocol_file\":"); // resume looks whether it is still the same
+    json_path(out, options->protocol);
     fprintf(out, ",\"scenes\":{");
     for (uint32_t i = 0; i < study->protocol->scene_count; i++) {
         fprintf(out, "%s", i ? "," : "");
         json_string(out, study->protocol->scenes[i]);
         fprintf(out, ":");
-        json_string(out, study_scene_spec(options->scenes, options->scene_count, study->protocol->scenes[i]));
+        json_string(out, study_shown_scene(study->protocol, i, options->scenes, options->scene_count));
     }
     fprintf(out, "}}");
     return fclose(out) == 0 ? text : NULL;
@@ -103,22 +149,35 @@ static void read_boot_id(char *out, size_t size)
         fclose(file);
 }
 
+struct store_segment run_rows_segment(struct run_rows *rows, const struct run_view *view, const char *reason,
+                                      struct run_words *words)
+{
+    bool simulated_clock = !view->display || view->display->simulated_clock;
+    rows->origin_ns = simulated_clock ? 0 : display_now_ns(view->display);
+    record_time_utc(words->now);
+    read_boot_id(words->boot_id, sizeof words->boot_id);
+    return (struct store_segment){
+        .started_at = words->now,
+        .mono_origin_ns = rows->origin_ns,
+        .clock = simulated_clock ? "simulated" : "monotonic",
+        // A simulated clock starts at 0 in every run, whichever computer.
+        .boot_id = !simulated_clock && words->boot_id[0] ? words->boot_id : NULL,
+        .app_version = FOVSTUDY_VERSION,
+        .reason = reason,
+    };
+}
+
 static struct store_session describe(const struct run_options *options, const struct run_study *study,
                                      const struct run_view *view, const struct run_rows *rows)
 {
     const struct renderer_device *device = view->renderer ? renderer_device(view->renderer) : NULL;
     struct display *display = view->display;
-    bool simulated_clock = !display || display->simulated_clock;
     return (struct store_session){
         .protocol = {study->protocol->name, study->protocol->sha256_hex, study->protocol->text},
         .participant = {.code = options->participant,
                         .kind = options->observer ? "simulated" : "person",
                         .attributes = study->attributes,
                         .number = (int64_t)rows->plan->number + 1},
-        .segment = {.mono_origin_ns = rows->origin_ns,
-                    .clock = simulated_clock ? "simulated" : "monotonic",
-                    .app_version = FOVSTUDY_VERSION,
-                    .reason = "start"},
         .seed = rows->plan->seed,
         .device = device ? device->name : NULL,
         .driver = device ? device->driver : NULL,
@@ -127,6 +186,7 @@ static struct store_session describe(const struct run_options *options, const st
         .width_px = display ? display->width : 0,
         .height_px = display ? display->height : 0,
         .fov_deg = display ? options->fov_deg : 0.0,
+        .again = options->again,
         .condition_count = rows->plan->condition_count,
         .trial_count = rows->plan->trial_count,
     };
@@ -135,7 +195,6 @@ static struct store_session describe(const struct run_options *options, const st
 static bool create_session(struct run_rows *rows, struct store_session *session, char *error, size_t error_size)
 {
     struct store_error why;
-    char now[RECORD_TIME], boot_id[64];
     struct store_condition *conditions = calloc(rows->plan->condition_count + 1, sizeof *conditions);
     struct store_trial *trials = calloc(rows->plan->trial_count + 1, sizeof *trials);
     bool done = false;
@@ -144,11 +203,6 @@ static bool create_session(struct run_rows *rows, struct store_session *session,
         goto end;
     }
     fill_trials(rows->plan, conditions, trials);
-    record_time_utc(now);
-    read_boot_id(boot_id, sizeof boot_id);
-    session->started_at = session->segment.started_at = now;
-    // A simulated clock starts at 0 in every run, whichever computer.
-    session->segment.boot_id = strcmp(session->segment.clock, "monotonic") == 0 && boot_id[0] ? boot_id : NULL;
     session->conditions = conditions;
     session->trials = trials;
     done = store_create_session(rows->store, session, &rows->ids, &why) == STORE_OK;
@@ -177,14 +231,15 @@ bool run_rows_conditions(struct run_rows *rows, char *error, size_t error_size)
 bool run_rows_create(struct run_rows *rows, const struct run_options *options, const struct run_study *study,
                      const struct run_view *view, char *error, size_t error_size)
 {
-    if (view->display && !view->display->simulated_clock)
-        rows->origin_ns = display_now_ns(view->display);
+    struct run_words words;
     char *settings = settings_json(options, study, view);
     if (!settings) {
         snprintf(error, error_size, "out of memory");
         return false;
     }
     struct store_session session = describe(options, study, view, rows);
+    session.segment = run_rows_segment(rows, view, "start", &words);
+    session.started_at = words.now;
     session.settings = settings;
     bool done = create_session(rows, &session, error, error_size);
     free(settings);
@@ -217,5 +272,10 @@ bool run_rows_finish(struct run_rows *rows, char *error, size_t error_size)
     plan_destroy(rows->plan);
     free(rows->ids.condition_ids);
     free(rows->ids.trial_ids);
+    free(rows->done);
+    free(rows->attempts);
+    free(rows->answers);
+    free(rows->outcomes);
+    free(rows->repeats);
     return done;
 }

@@ -8,8 +8,10 @@
 #include "app/display/display.h"
 #include "app/fovstudy/run_options.h"
 #include "app/gaze/gaze_source.h"
+#include "app/session/record.h"
 #include "app/session/stage.h"
 #include "studies/engine/observer.h"
+#include "studies/store/resume.h"
 #include "studies/store/store.h"
 
 enum { RUN_ERROR = 1024, RUN_JSON = 4096 };
@@ -22,6 +24,9 @@ struct run_study {
     char attributes[RUN_JSON]; // JSON object
 };
 bool run_study_init(struct run_study *study, const struct run_options *options, char *error, size_t error_size);
+// The same for a session that a study file holds; the options are complete.
+bool run_study_init_stored(struct run_study *study, const struct run_options *options,
+                           const struct store_session_start *start, char *error, size_t error_size);
 void run_study_finish(struct run_study *study);
 
 // Display, renderer and scenes; all zero with --display none but for the gaze source.
@@ -49,11 +54,26 @@ struct run_rows {
     struct store_session_ids ids; // its arrays are owned
     int64_t reference_id;
     int64_t origin_ns;
+    // Of a resumed session: where the machine begins; the arrays are owned.
+    bool *done;
+    uint32_t *attempts, *answers, *repeats;
+    int32_t *outcomes;
+    uint32_t repeat_count, capacity;
+    uint32_t done_count;
 };
 bool run_rows_open(struct run_rows *rows, const struct run_options *options, const struct run_study *study,
                    char *error, size_t error_size);
 bool run_rows_create(struct run_rows *rows, const struct run_options *options, const struct run_study *study,
                      const struct run_view *view, char *error, size_t error_size);
+// The segment of this run of the program, its texts in `words`; sets rows->origin_ns.
+struct run_words {
+    char now[RECORD_TIME], boot_id[64];
+};
+struct store_segment run_rows_segment(struct run_rows *rows, const struct run_view *view, const char *reason,
+                                      struct run_words *words);
+// A plan and room for its ids. False with a sentence.
+bool run_rows_plan(struct run_rows *rows, const struct protocol *protocol, uint64_t seed, int64_t number,
+                   char *error, size_t error_size);
 // The ids of the plan's conditions, before there is a session: rows of their own where the file has none.
 bool run_rows_conditions(struct run_rows *rows, char *error, size_t error_size);
 bool run_rows_reference(struct run_rows *rows, const struct run_study *study, char *error, size_t error_size);

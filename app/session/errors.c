@@ -130,37 +130,44 @@ static bool find(const struct plan *plan, struct store *store, const struct stor
     return false;
 }
 
-static const char *spec_of(const struct plan *plan, const char *const *specs, const char *scene)
+static uint32_t scene_of(const struct plan *plan, const char *scene)
 {
     uint32_t i = 0;
     while (strcmp(plan->protocol->scenes[i], scene) != 0)
         i++;
-    return specs[i];
+    return i;
 }
 
 bool errors_init(struct errors *errors, const struct plan *plan, struct store *store,
                  const int64_t *condition_ids, int64_t reference_id, const char *const *specs, const char *file,
                  char *error, size_t error_size)
 {
-    struct table table;
-    *errors =
-        (struct errors){.plan = plan, .slots = calloc((size_t)plan->trial_count * 2, sizeof *errors->slots)};
-    bool good = errors->slots && read_table(&table, file, error, error_size);
-    for (uint32_t t = 0; good && t < plan->trial_count; t++) {
-        for (int slot = 0; good && slot < 2; slot++) {
-            int32_t condition = plan->trials[t].option[slot];
-            if (condition < 0)
-                continue;
-            struct store_error_key key = {.condition_id = condition_ids[condition],
-                                          .reference_id = reference_id,
-                                          .scene = spec_of(plan, specs, plan->trials[t].scene),
-                                          .metric = MEASURE_METRIC};
-            good = find(plan, store, &key, condition, plan->trials[t].scene, &table,
-                        &errors->slots[2 * t + (uint32_t)slot], error, error_size);
-        }
+    struct table table = {0};
+    // Thousands of trials share a few options and scenes: each pair is looked up once. NAN: not yet.
+    size_t pairs = (size_t)plan->condition_count * plan->protocol->scene_count;
+    double *known = malloc((pairs + 1) * sizeof *known);
+    *errors = (struct errors){.plan = plan,
+                              .slots = calloc((size_t)plan->trial_count * 2 + 1, sizeof *errors->slots)};
+    bool good = known && errors->slots && read_table(&table, file, error, error_size);
+    for (size_t i = 0; good && i < pairs; i++)
+        known[i] = NAN;
+    for (size_t i = 0; good && i < 2 * (size_t)plan->trial_count; i++) {
+        const struct plan_trial *trial = &plan->trials[i / 2];
+        int32_t condition = trial->option[i % 2];
+        if (condition < 0)
+            continue;
+        uint32_t scene = scene_of(plan, trial->scene);
+        double *value = &known[(size_t)condition * plan->protocol->scene_count + scene];
+        struct store_error_key key = {.condition_id = condition_ids[condition],
+                                      .reference_id = reference_id,
+                                      .scene = specs[scene],
+                                      .metric = MEASURE_METRIC};
+        if (isnan(*value))
+            good = find(plan, store, &key, condition, trial->scene, &table, value, error, error_size);
+        errors->slots[i] = *value;
     }
-    if (errors->slots)
-        free(table.lines);
+    free(table.lines);
+    free(known);
     if (!good)
         errors_finish(errors);
     return good;

@@ -6,7 +6,28 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
+
+#define SEQ "{\"seq\":"
+
+// Takes a last line without an end away, where it is one of ours; text of others gets its end.
+static bool mend(int file)
+{
+    char tail[EVENT_LINE];
+    off_t size = lseek(file, 0, SEEK_END);
+    off_t from = size > (off_t)sizeof tail ? size - (off_t)sizeof tail : 0;
+    ssize_t got = size > 0 ? pread(file, tail, sizeof tail, from) : 0;
+    if (got <= 0 || tail[got - 1] == '\n')
+        return true;
+    ssize_t start = got;
+    while (start > 0 && tail[start - 1] != '\n')
+        start--;
+    size_t length = (size_t)(got - start), known = strlen(SEQ) < length ? strlen(SEQ) : length;
+    if (memcmp(tail + start, SEQ, known) == 0)
+        return ftruncate(file, from + start) == 0;
+    return write(file, "\n", 1) == 1;
+}
 
 // The number after the last line's, from the last EVENT_LINE bytes of the file.
 static uint64_t following(int file)
@@ -21,11 +42,25 @@ static uint64_t following(int file)
         return 1;
     tail[got] = '\0';
     const char *last = NULL, *found = tail;
-    while ((found = strstr(found, "{\"seq\":"))) {
+    while ((found = strstr(found, SEQ))) {
         last = found;
         found++;
     }
-    return last ? strtoull(last + strlen("{\"seq\":"), NULL, 10) + 1 : 1;
+    return last ? strtoull(last + strlen(SEQ), NULL, 10) + 1 : 1;
+}
+
+// Standard output may be a file that lines are appended to (>>): its numbers go on as well. It cannot be read
+// itself.
+static uint64_t following_output(void)
+{
+    struct stat status;
+    if (fstat(STDOUT_FILENO, &status) != 0 || !S_ISREG(status.st_mode))
+        return 1;
+    int file = open("/proc/self/fd/1", O_RDONLY | O_CLOEXEC);
+    uint64_t next = file >= 0 ? following(file) : 1;
+    if (file >= 0)
+        close(file);
+    return next;
 }
 
 bool event_lines_open(struct event_lines *lines, const char *path, char *error, size_t error_size)
@@ -35,10 +70,11 @@ bool event_lines_open(struct event_lines *lines, const char *path, char *error, 
         return true;
     if (strcmp(path, "-") == 0) {
         lines->file = STDOUT_FILENO;
+        lines->next = following_output();
         return true;
     }
     lines->file = open(path, O_RDWR | O_APPEND | O_CREAT | O_CLOEXEC, 0644);
-    if (lines->file < 0) {
+    if (lines->file < 0 || !mend(lines->file)) {
         snprintf(error, error_size, "the events file '%s' cannot be written: %s", path, strerror(errno));
         return false;
     }
@@ -60,7 +96,11 @@ bool event_line(struct event_lines *lines, const char *event, int64_t at_ns, con
     }
     ssize_t written = write(lines->file, line, (size_t)length);
     if (written != length) {
-        errno = written < 0 ? errno : ENOSPC;
+        int reason = written < 0 ? errno : ENOSPC;
+        off_t end = written > 0 ? lseek(lines->file, 0, SEEK_END) : -1; // no file: nothing can be taken back
+        if (written > 0 && end >= written)
+            (void)!ftruncate(lines->file, end - written);
+        errno = reason;
         return false;
     }
     lines->next++;

@@ -173,6 +173,12 @@ void screen_of(const struct machine_view *view, const struct screen_state *state
     memset(out, 0, sizeof *out);
     PUT(out->more, "\xe2\x86\x92 or Enter: read on");
     out->size = 1.0;
+    if (state->wait) {
+        PUT(out->title, "Please wait ...");
+        PUT(out->body, "The study cannot be stored just now.\nNothing is lost. Please call the experimenter.");
+        out->shown = true;
+        return;
+    }
     switch (view->screen) {
     case MACHINE_CONSENT:
         PUT(out->title, "Consent");

@@ -17,6 +17,7 @@ struct screen_state {
     int32_t selected;        // marked rating
     bool look_at_both;       // a choice came before both were seen
     bool starts_trial;       // INSTRUCTIONS: a trial follows at once
+    bool wait;               // the study file cannot be written: over every screen
 };
 
 struct screen {

@@ -1,5 +1,8 @@
 // One running session: protocol, store, renderer, display, gaze and answers joined frame by frame.
 //
+// While the study file or the events file cannot be written the session stands still ("please wait"), keeps the
+// answer that waits, tries again and goes on when it can.
+//
 // Use: prepare everything in a struct session_desc (fovstudy run does) -> session_run until it returns.
 // Without a display nothing is drawn: time goes by steps of step_hz and a simulated observer answers from
 // `errors`. Does not: own what the desc points to, parse options, create the session's rows (the caller did).
@@ -8,6 +11,7 @@
 
 #include "app/display/display.h"
 #include "app/gaze/gaze_source.h"
+#include "app/session/desk.h"
 #include "app/session/errors.h"
 #include "app/session/event_lines.h"
 #include "app/session/stage.h"
@@ -22,6 +26,7 @@ struct session_desc {
     struct store *store;
     const struct store_session_ids *ids; // with condition_ids and trial_ids
     int64_t reference_id;                // the condition that errors are measured against
+    const struct machine_start *start;   // where a resumed session goes on; NULL: from the beginning
     int64_t origin_ns;                   // the display's clock at the segment's time 0
     struct event_lines *lines;
 
@@ -41,6 +46,11 @@ struct session_desc {
     // Called once per screen or trial, e.g. to print progress; NULL: not.
     void (*progress)(void *user, const struct machine_view *view);
     void *progress_user;
+    // One sentence for the experimenter while the session runs, e.g. on a full disk; NULL: not.
+    void (*say)(void *user, const char *sentence);
+    void *say_user;
+    struct desk *desk; // the experimenter's; NULL: none
+    double patience_s; // how long trouble with the disk may last before the session fails; 0: for ever
 };
 
 enum session_result {

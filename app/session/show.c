@@ -214,15 +214,18 @@ static bool draw_option(struct show *show, const struct machine_view *view, cons
         snprintf(error, error_size, "the GPU could not draw frame %llu", (unsigned long long)show->number);
         return false;
     }
+    int64_t condition_id = recorder_condition(recorder, view->trial, view->slot);
     if (!measure_option(show, view, option, &frame)) {
         snprintf(error, error_size, "the image error of frame %llu could not be measured",
                  (unsigned long long)show->number);
         return false;
     }
     tell_redraw(show, view, recorder, row->start_ns, stats.redraw);
-    row->effective = stage_effective(show->desc->stage, view->slot);
+    // A staircase's level is in the row's condition already.
+    bool has_level = recorder->level_condition && view->slot == view->trial->test_slot;
+    row->effective = has_level ? NULL : stage_effective(show->desc->stage, view->slot);
     fill_fovea(&use, source, row);
-    row->condition_id = show->desc->ids->condition_ids[view->condition];
+    row->condition_id = condition_id;
     row->cpu_us = stats.cpu_ms * 1e3;
     row->gpu_us = stats.gpu_ms * 1e3;
     row->shaded_px = (int64_t)stats.shaded_px;
@@ -268,6 +271,8 @@ static void time_row(struct show *show, struct store_frame *row)
     struct display *display = show->desc->display;
     double refresh_ns = display->refresh_hz > 0.0 ? 1e9 / display->refresh_hz : NAN;
     row->present_estimated = true;
+    show->frame_ms = NAN;
+    show->late = false;
     if (display->simulated_clock) {
         row->present_ns = row->start_ns + (int64_t)llround(refresh_ns);
         return;
@@ -277,6 +282,9 @@ static void time_row(struct show *show, struct store_frame *row)
     if (!isnan(refresh_ns))
         row->late =
             show->last_present_ns >= 0 && (double)(row->present_ns - show->last_present_ns) > 1.5 * refresh_ns;
+    if (show->last_present_ns >= 0)
+        show->frame_ms = (double)(row->present_ns - show->last_present_ns) * 1e-6;
+    show->late = row->late == 1;
     show->last_present_ns = row->present_ns;
 }
 

@@ -14,6 +14,8 @@ struct show {
     uint64_t number;         // of the next frame
     int64_t last_present_ns; // -1: none
     bool gaze_lost;          // at the last frame that was drawn
+    double frame_ms;         // from the frame before to this one, as shown; NaN for the first
+    bool late;               // this one
 };
 
 // False: out of memory.

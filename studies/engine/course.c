@@ -214,41 +214,41 @@ void course_go_on(struct machine *machine, enum machine_screen same_block)
     machine->screen = *machine->text ? MACHINE_INSTRUCTIONS : MACHINE_READY;
 }
 
-// A trial that cannot be used comes again after all others; of a staircase the next trial takes its place.
-static void repeat(struct machine *machine, uint32_t place)
+// The place at which a trial comes again, after all others; of a staircase the next trial takes its place.
+// False: no memory.
+static bool repeat(struct machine *machine, uint32_t place, uint32_t *out_again)
 {
-    uint32_t again = course_places(machine);
+    *out_again = UINT32_MAX;
     if (machine_trial(machine, place)->kind == PROTOCOL_STAIRCASE)
-        return;
-    if (!grow(machine, again + 2)) {
-        machine_end(machine, false);
-        return;
-    }
+        return true;
+    uint32_t again = course_places(machine);
+    if (!grow(machine, again + 2))
+        return false;
     machine->repeats[machine->repeat_count++] =
         (uint32_t)(machine_trial(machine, place) - machine->plan->trials);
-    struct machine_record *record = machine_push(machine, MACHINE_TRIAL_REPEATED, machine->now_ns);
-    if (record) {
-        record->trial = again;
-        record->repeat_of = place;
-    }
+    *out_again = again;
+    return true;
 }
 
 void course_invalid(struct machine *machine, uint32_t place, bool late)
 {
+    uint32_t again;
     bool running = place == machine->trial && !machine->done[place];
     if (running && machine->screen == MACHINE_STIMULUS)
         stimulus_close_exposure(machine);
-    machine->done[place] = true;
-    struct machine_record *record = machine_push(machine, MACHINE_TRIAL_INVALID, machine->now_ns);
-    if (record) {
-        record->trial = place;
-        record->attempt = machine->attempts[place];
-        record->late = late;
-    }
-    machine->last_trial = UINT32_MAX;
-    repeat(machine, place);
-    if (machine->screen == MACHINE_END)
+    if (!repeat(machine, place, &again)) {
+        machine_end(machine, false);
         return;
+    }
+    machine->done[place] = true;
+    machine->last_trial = UINT32_MAX;
+    struct machine_record *record = machine_push(machine, MACHINE_TRIAL_INVALID, machine->now_ns);
+    if (!record)
+        return;
+    record->trial = place;
+    record->attempt = machine->attempts[place];
+    record->late = late;
+    record->again = again;
     if (running) {
         machine->screen = MACHINE_REST;
         machine->since_ns = machine->now_ns;

@@ -99,8 +99,7 @@ enum machine_record_kind {
     MACHINE_CONSENT_REFUSED,
     MACHINE_TRIAL_STARTED,  // at_ns: the first frame of the attempt; level
     MACHINE_TRIAL_DONE,     // at_ns: the answer; comes right after the trial's last answer record
-    MACHINE_TRIAL_INVALID,  // flagged or too late (late tells)
-    MACHINE_TRIAL_REPEATED, // repeat_of: a new trial after all others
+    MACHINE_TRIAL_INVALID,  // flagged or too late (late tells); `again` is the place where it comes again
     MACHINE_TRIAL_SKIPPED,  // its staircase has ended
     MACHINE_EXPOSURE,       // one stretch of one option
     MACHINE_TOGGLE,         // slot: the option it goes to
@@ -117,6 +116,7 @@ enum machine_record_kind {
     MACHINE_CLOCK_BACK, // value_ns: by how much
     MACHINE_ENDED       // complete
 };
+bool machine_is_answer(enum machine_record_kind kind);
 const char *machine_record_name(enum machine_record_kind kind); // a word for event lines: "trial_started"
 
 struct machine_record {
@@ -143,7 +143,7 @@ struct machine_record {
     // exposure: frame times; first and last frame that showed any of it, and of those without fade (-1: none)
     int64_t start_ns, end_ns, full_start_ns, full_end_ns;
     int64_t value_ns;
-    uint32_t repeat_of;
+    uint32_t again; // UINT32_MAX: nowhere
     bool late;
     bool complete;
 };

@@ -17,14 +17,18 @@ const char *machine_phase_name(enum machine_phase phase)
     return names[phase];
 }
 
+bool machine_is_answer(enum machine_record_kind kind)
+{
+    return kind == MACHINE_CHOICE || kind == MACHINE_RATING || kind == MACHINE_RESPONSES;
+}
+
 const char *machine_record_name(enum machine_record_kind kind)
 {
-    static const char *const names[] = {"consent_given", "consent_refused", "trial_started",  "trial_done",
-                                        "trial_invalid", "trial_repeated",  "trial_skipped",  "exposure",
-                                        "toggle",        "toggle_ignored",  "choice_early",   "adjusted",
-                                        "choice",        "rating",          "responses",      "pause_began",
-                                        "pause_ended",   "abort_asked",     "abort_declined", "clock_back",
-                                        "ended"};
+    static const char *const names[] = {"consent_given",  "consent_refused", "trial_started", "trial_done",
+                                        "trial_invalid",  "trial_skipped",   "exposure",      "toggle",
+                                        "toggle_ignored", "choice_early",    "adjusted",      "choice",
+                                        "rating",         "responses",       "pause_began",   "pause_ended",
+                                        "abort_asked",    "abort_declined",  "clock_back",    "ended"};
     return names[kind];
 }
 

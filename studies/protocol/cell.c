@@ -81,7 +81,7 @@ bool cell_change(struct reader *reader, const struct yaml_node *map, const struc
     uint32_t scene = 0, found = 0, role = cell->role;
     scene_names(reader, names);
     if (!read_section(reader, map, &language_level, NULL) || !change_options(reader, map, block, cell) ||
-        !key_names(reader, map, "scene", "scene", names, 1, &scene, &found) ||
+        !key_names(reader, map, &language_level, "scene", "scene", names, 1, &scene, &found) ||
         !key_word(reader, map, &language_level, "role", &role) ||
         !key_labels(reader, map, "labels", cell->labels) ||
         !settings_read(reader, yaml_get(map, "settings"), &cell->settings))
@@ -157,7 +157,8 @@ bool cell_check(struct reader *reader, const struct yaml_node *node, const struc
 {
     const struct protocol_settings *settings = &cell->settings;
     bool pair = protocol_kind_is_pair(block->kind);
-    if (!question_check(reader, node, block, cell) || !count_check(reader, node, block, settings))
+    if (!question_check(reader, node, block, cell) || !count_check(reader, node, block, settings) ||
+        !timing_check(reader, node, block, settings))
         return false;
     if (settings->foveate == PROTOCOL_FOVEATE_TARGET && settings->fixation == PROTOCOL_FIXATION_FREE)
         return read_fail(

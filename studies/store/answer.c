@@ -31,6 +31,18 @@ enum store_result store_start_trial(struct store *store, int64_t trial_id, int64
     return sql_end(store, result, error);
 }
 
+enum store_result store_set_trial_option(struct store *store, int64_t trial_id, enum store_slot slot,
+                                         int64_t condition_id, struct store_error *error)
+{
+    const struct sql_value values[] = {sql_id(trial_id), sql_slot(slot), sql_id(condition_id)};
+    enum store_result result = sql_begin(store, error);
+    if (result == STORE_OK)
+        result = sql_run(store, SQL_SET_TRIAL_OPTION, values, countof(values), NULL, error);
+    if (result == STORE_OK)
+        result = trial_changed(store, trial_id, "does not exist", error);
+    return sql_end(store, result, error);
+}
+
 static enum store_result end_trial(struct store *store, int64_t trial_id, const char *status, int64_t ended_ns,
                                    struct store_error *error)
 {
@@ -45,6 +57,19 @@ enum store_result store_end_trial(struct store *store, int64_t trial_id, const c
     enum store_result result = sql_begin(store, error);
     if (result == STORE_OK)
         result = end_trial(store, trial_id, status, ended_ns, error);
+    return sql_end(store, result, error);
+}
+
+enum store_result store_repeat_trial(struct store *store, int64_t trial_id, int64_t ordinal, int64_t ended_ns,
+                                     int64_t *out_id, struct store_error *error)
+{
+    const struct sql_value values[] = {sql_id(trial_id), sql_integer(ordinal)};
+    *out_id = 0;
+    enum store_result result = sql_begin(store, error);
+    if (result == STORE_OK)
+        result = end_trial(store, trial_id, "invalid", ended_ns, error);
+    if (result == STORE_OK && ordinal > 0)
+        result = sql_run(store, SQL_REPEAT_TRIAL, values, countof(values), out_id, error);
     return sql_end(store, result, error);
 }
 
@@ -86,23 +111,27 @@ enum store_result store_answer_rating(struct store *store, const struct store_ra
     enum store_result result = sql_begin(store, error);
     if (result == STORE_OK)
         result = sql_run(store, SQL_INSERT_RATING, values, countof(values), out_id, error);
+    if (result == STORE_OK && rating->step)
+        result = insert_step(store, rating->trial_id, rating->step, NULL, error);
     if (result == STORE_OK && rating->ends_trial)
         result = end_trial(store, rating->trial_id, "done", rating->answered_ns, error);
     return sql_end(store, result, error);
 }
 
-enum store_result store_answer_response(struct store *store, const struct store_response *response,
-                                        int64_t *out_id, struct store_error *error)
+enum store_result store_answer_responses(struct store *store, const struct store_response *responses,
+                                         uint32_t count, int64_t *out_id, struct store_error *error)
 {
-    const struct sql_value values[] = {sql_id(response->trial_id),   sql_id(response->segment_id),
-                                       sql_text(response->question), sql_real(response->value),
-                                       sql_real(response->expected), sql_integer(response->answered_ns),
-                                       sql_text(response->device)};
     enum store_result result = sql_begin(store, error);
-    if (result == STORE_OK)
-        result = sql_run(store, SQL_INSERT_RESPONSE, values, countof(values), out_id, error);
-    if (result == STORE_OK && response->ends_trial)
-        result = end_trial(store, response->trial_id, "done", response->answered_ns, error);
+    for (uint32_t i = 0; i < count && result == STORE_OK; i++) {
+        const struct store_response *response = &responses[i];
+        const struct sql_value values[] = {sql_id(response->trial_id),   sql_id(response->segment_id),
+                                           sql_text(response->question), sql_real(response->value),
+                                           sql_real(response->expected), sql_integer(response->answered_ns),
+                                           sql_text(response->device)};
+        result = sql_run(store, SQL_INSERT_RESPONSE, values, countof(values), i ? NULL : out_id, error);
+        if (result == STORE_OK && response->ends_trial)
+            result = end_trial(store, response->trial_id, "done", response->answered_ns, error);
+    }
     return sql_end(store, result, error);
 }
 

@@ -104,6 +104,14 @@ uint64_t queue_waiting(struct queue *queue)
     return count;
 }
 
+bool queue_failing(struct queue *queue)
+{
+    pthread_mutex_lock(&queue->mutex);
+    bool failing = queue->status.failing;
+    pthread_mutex_unlock(&queue->mutex);
+    return failing;
+}
+
 void store_status(struct store *store, struct store_status *out)
 {
     *out = (struct store_status){0};

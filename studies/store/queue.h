@@ -68,5 +68,6 @@ void queue_mark(struct queue *queue);      // sets span to all that waits
 void queue_committed(struct queue *queue); // span is on disk
 void queue_failed(struct queue *queue, const char *why);
 uint64_t queue_waiting(struct queue *queue); // entries and unreported drops
+bool queue_failing(struct queue *queue);     // the last commit did not succeed
 
 #endif

@@ -1,3 +1,5 @@
+#include "studies/store/resume.h"
+#include "studies/store/rows.h"
 #include "studies/store/sql.h"
 
 #include <math.h>
@@ -206,6 +208,22 @@ enum store_result store_create_session(struct store *store, const struct store_s
     return sql_end(store, result, error);
 }
 
+enum store_result store_resume_session(struct store *store, int64_t session_id,
+                                       const struct store_segment *segment, const char *gap_detail,
+                                       int64_t *out_segment_id, struct store_error *error)
+{
+    enum store_result result = sql_begin(store, error);
+    if (result == STORE_OK)
+        result = insert_segment(store, session_id, segment, out_segment_id, error);
+    if (result == STORE_OK) {
+        struct sql_value values[ROWS_EVENT_COLUMNS];
+        struct store_event gap = {.session_id = session_id, .segment_id = *out_segment_id};
+        rows_event(&gap, "gap", gap_detail, values);
+        result = sql_run(store, SQL_INSERT_EVENT, values, countof(values), NULL, error);
+    }
+    return sql_end(store, result, error);
+}
+
 enum store_result store_add_segment(struct store *store, int64_t session_id,
                                     const struct store_segment *segment, int64_t *out_id,
                                     struct store_error *error)
@@ -258,13 +276,16 @@ enum store_result store_set_consent(struct store *store, int64_t session_id, con
 }
 
 enum store_result store_end_session(struct store *store, int64_t session_id, const char *status,
-                                    const char *ended_at, struct store_error *error)
+                                    const char *ended_at, int64_t ended_ns, struct store_error *error)
 {
     const struct sql_value values[] = {sql_id(session_id), sql_text(status), sql_text(ended_at)};
+    const struct sql_value trial[] = {sql_id(session_id), sql_integer(ended_ns)};
     enum store_result result = sql_begin(store, error);
     if (result == STORE_OK)
         result = sql_run(store, SQL_END_SESSION, values, countof(values), NULL, error);
     if (result == STORE_OK)
         result = nothing_changed(store, "is not running", session_id, error);
+    if (result == STORE_OK)
+        result = sql_run(store, SQL_SKIP_RUNNING, trial, countof(trial), NULL, error);
     return sql_end(store, result, error);
 }

@@ -36,7 +36,21 @@ const char *const sql_statements[SQL_STATEMENTS] = {
         "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, 'planned')",
     [SQL_SET_CONSENT] = "UPDATE session SET consent_at = ?2, consent_version = ?3 WHERE id = ?1",
     [SQL_END_SESSION] = "UPDATE session SET status = ?2, ended_at = ?3 WHERE id = ?1 AND status = 'running'",
+    [SQL_SKIP_RUNNING] =
+        "UPDATE trial SET status = 'skipped', ended_ns = ?2 WHERE session_id = ?1 AND status = "
+        "'running'",
+    [SQL_COUNT_SESSIONS] =
+        "SELECT count(*), max(CASE s.status WHEN 'running' THEN s.id ELSE 0 END) "
+        "FROM session AS s JOIN participant AS p ON p.id = s.participant_id WHERE p.code = ?1",
 
+    [SQL_REPEAT_TRIAL] =
+        "INSERT INTO trial (session_id, ordinal, block, kind, scene, settings, factors, option_a, option_b, "
+        "test_slot, first_shown, fixation, seed, repeat_of, status) "
+        "SELECT session_id, ?2, block, kind, scene, settings, factors, option_a, option_b, test_slot, "
+        "first_shown, "
+        "fixation, seed, id, 'planned' FROM trial WHERE id = ?1",
+    [SQL_SET_TRIAL_OPTION] = "UPDATE trial SET option_a = CASE ?2 WHEN 'a' THEN ?3 ELSE option_a END, "
+                             "option_b = CASE ?2 WHEN 'b' THEN ?3 ELSE option_b END WHERE id = ?1",
     [SQL_START_TRIAL] = "UPDATE trial SET status = 'running', attempt = attempt + 1, segment_id = ?2, "
                         "started_ns = ?3, ended_ns = NULL WHERE id = ?1 AND status IN ('planned', 'running')",
     [SQL_GET_ATTEMPT] = "SELECT attempt FROM trial WHERE id = ?1",

@@ -21,7 +21,11 @@ enum sql_statement {
     SQL_INSERT_TRIAL,
     SQL_SET_CONSENT,
     SQL_END_SESSION,
+    SQL_SKIP_RUNNING,
+    SQL_COUNT_SESSIONS,
     // trial.c, answer.c
+    SQL_REPEAT_TRIAL,
+    SQL_SET_TRIAL_OPTION,
     SQL_START_TRIAL,
     SQL_GET_ATTEMPT,
     SQL_END_TRIAL,

@@ -82,6 +82,9 @@ struct store *store_open(const struct store_desc *desc, struct store_error *erro
 // The store is gone in any case; NULL is fine.
 enum store_result store_close(struct store *store, struct store_error *error);
 
+// From now on a write waits at most this long for another program's: a running session must not stand still.
+void store_set_busy(struct store *store, uint32_t busy_ms);
+
 // Reads the whole file: SQLite's integrity_check and foreign_key_check. Minutes for gigabytes.
 enum store_result store_check(struct store *store, struct store_error *error);
 
@@ -171,15 +174,23 @@ enum store_result store_add_trial(struct store *store, int64_t session_id, const
 // The id of an equal condition, or of a new row.
 enum store_result store_add_condition(struct store *store, const struct store_condition *condition,
                                       int64_t *out_id, struct store_error *error);
-// status "complete" or "aborted"; only a running session can end.
+// status "complete" or "aborted"; only a running session can end. A trial that runs has no answer and gets
+// none: it is skipped, at ended_ns.
 enum store_result store_end_session(struct store *store, int64_t session_id, const char *status,
-                                    const char *ended_at, struct store_error *error);
+                                    const char *ended_at, int64_t ended_ns, struct store_error *error);
 
 // --- trials and answers ---
 
 // Status running, next attempt. Refused where the trial is not planned or running.
 enum store_result store_start_trial(struct store *store, int64_t trial_id, int64_t segment_id,
                                     int64_t started_ns, int64_t *out_attempt, struct store_error *error);
+// What a trial shows in a slot that is known only when it starts, as of a staircase.
+enum store_result store_set_trial_option(struct store *store, int64_t trial_id, enum store_slot slot,
+                                         int64_t condition_id, struct store_error *error);
+// Makes a trial invalid and plans it again at the end, at `ordinal`; both or neither. ordinal 0: not again,
+// out_id 0.
+enum store_result store_repeat_trial(struct store *store, int64_t trial_id, int64_t ordinal, int64_t ended_ns,
+                                     int64_t *out_id, struct store_error *error);
 // Status "done", "skipped", "invalid", or "planned" to give an interrupted one back. ended_ns may be
 // STORE_UNKNOWN.
 enum store_result store_end_trial(struct store *store, int64_t trial_id, const char *status, int64_t ended_ns,
@@ -213,6 +224,7 @@ struct store_rating {
     double value, scale_min, scale_max;
     int64_t answered_ns;
     bool ends_trial;
+    const struct store_staircase_step *step; // written in the same transaction; NULL: none
 };
 
 struct store_response {
@@ -230,8 +242,10 @@ enum store_result store_answer_choice(struct store *store, const struct store_ch
                                       struct store_error *error);
 enum store_result store_answer_rating(struct store *store, const struct store_rating *rating, int64_t *out_id,
                                       struct store_error *error);
-enum store_result store_answer_response(struct store *store, const struct store_response *response,
-                                        int64_t *out_id, struct store_error *error);
+// One answer of one or several values, all or none of them; ends_trial of the last one counts. out_id: of the
+// first.
+enum store_result store_answer_responses(struct store *store, const struct store_response *responses,
+                                         uint32_t count, int64_t *out_id, struct store_error *error);
 enum store_result store_add_staircase_step(struct store *store, int64_t trial_id,
                                            const struct store_staircase_step *step, int64_t *out_id,
                                            struct store_error *error);

@@ -1,16 +1,30 @@
 #include "studies/store/queue.h"
+#include "studies/store/rescue.h"
 #include "studies/store/rows.h"
 #include "studies/store/sql.h"
 
 #include <sys/stat.h>
 
+bool sql_file_there(const struct store *store)
+{
+    struct stat now;
+    return stat(store->path, &now) == 0 && now.st_dev == store->device && now.st_ino == store->inode;
+}
+
 // SQLite goes on writing to a file that was removed or replaced under it, and nobody would ever see those rows.
 static enum store_result check_file(struct store *store, struct store_error *error)
 {
-    struct stat now;
-    if (stat(store->path, &now) == 0 && now.st_dev == store->device && now.st_ino == store->inode)
+    char suffix[RESCUE_SUFFIX];
+    if (sql_file_there(store) || rescue_returned(store, error))
         return STORE_OK;
-    sql_say(error, "%s: the file was removed or replaced while in use; put it back and go on", store->path);
+    if (rescue_copy(store, suffix))
+        sql_say(
+            error,
+            "%s: the file was removed or replaced while in use; all it held is in %s%s: give that its old name "
+            "and go on",
+            store->path, store->path, suffix);
+    else
+        sql_say(error, "%s: the file was removed or replaced while in use; put it back and go on", store->path);
     return STORE_FAILED;
 }
 

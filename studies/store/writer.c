@@ -51,7 +51,11 @@ static void *run(void *argument)
     bool failed = false;
     while (wait_for_work(queue, writer->flush_ms, failed)) {
         struct store_error error; // kept by the queue for store_status
-        failed = queue_waiting(queue) > 0 && store_flush(writer->store, &error) != STORE_OK;
+        // Also where nothing waits: a file that is gone must be known within a second, and that it is back too.
+        if (queue_waiting(queue) > 0 || queue_failing(queue) || !sql_file_there(writer->store))
+            failed = store_flush(writer->store, &error) != STORE_OK;
+        else
+            failed = false;
     }
     return NULL;
 }

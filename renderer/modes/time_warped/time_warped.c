@@ -203,8 +203,6 @@ static bool create_joining(struct mode_state *s, const struct mode_setup *setup)
                                        .join = s->objects_regular};
     const struct compose_desc compose = {.gpu = s->gpu,
                                          .frame = setup->frame,
-                                         .width = setup->width,
-                                         .height = setup->height,
                                          .depth = s->deferred.gbuffer.depth.view,
                                          .id = s->deferred.gbuffer.id.view,
                                          .redraw_map = s->redraw_map.view,

@@ -18,27 +18,30 @@ layout(scalar, binding = 5) writeonly buffer Draws { shared_draw draws[]; };
 layout(scalar, binding = 6) writeonly buffer DrawCounts { uint draw_counts[]; };
 layout(scalar, binding = 7) buffer Counters { shared_counters counters; };
 
-shared uint flags[SHARED_CULL_GROUP];
+shared uint flags[SHARED_CULL_GROUP], base; // base: the bucket's draws before the group's
 
+// Loops of one turn, or of none in most lanes: the software driver leaves out a loop that no lane enters, but no branch.
 void main()
 {
     uint eye = gl_WorkGroupID.y, lane = gl_LocalInvocationID.x;
     shared_cull_group group = groups[gl_WorkGroupID.x];
     uint item = group.first_item + lane;
     flags[lane] = lane < group.item_count ? visible[eye * frame.item_count + item] : 0u;
+    uint sum = 0;
+    for (uint g = lane == 0 ? group.first_group : gl_WorkGroupID.x; g < gl_WorkGroupID.x; g++)
+        sum += group_counts[eye * gl_NumWorkGroups.x + g];
+    if (lane == 0)
+        base = sum;
     barrier();
 
-    uint base = 0;
-    for (uint g = group.first_group; g < gl_WorkGroupID.x; g++)
-        base += group_counts[eye * gl_NumWorkGroups.x + g];
-    if (flags[lane] != 0) {
+    for (bool drawn = flags[lane] != 0; drawn; drawn = false) {
         uint before = base;
         for (uint i = 0; i < lane; i++)
             before += flags[i];
         draws[eye * frame.item_count + group.bucket_first_item + before] =
             shared_draw(items[item].index_count, uint(instances), items[item].first_index, 0, item);
     }
-    if (lane == 0) {
+    for (bool first = lane == 0; first; first = false) {
         uint triangles = 0, own = 0;
         for (uint i = 0; i < group.item_count; i++) {
             own += flags[i];

@@ -2,8 +2,11 @@
 //
 // movers_mark: the boxes of objects that moved lately, where they are and where they were, are redrawn in turns
 // of MOVERS_PERIOD frames, so that one that comes from behind a corner into the trusted periphery, where no
-// pixel of it is known yet, shows within that many frames; large ones strip by strip. movers_join: after moving
-// objects were drawn everywhere, the kept pixels that they cover are redrawn ones.
+// pixel of it is known yet, shows within that many frames: large ones strip by strip
+// (renderer/shared/turn.glsl), small ones whole when it is the turn of the strip of their centre. The turn goes
+// from right to left, so a small one that flies the same way waits longer; 9 frames at 0.4 strips a frame, some
+// 500 degrees a second. movers_join: after moving objects were drawn everywhere, the kept pixels that they
+// cover are redrawn ones.
 #ifndef RENDERER_PASSES_MOVERS_MOVERS_H
 #define RENDERER_PASSES_MOVERS_MOVERS_H
 
@@ -15,9 +18,11 @@ struct movers {
     struct gpu *gpu;
     const struct scene_gpu *scene;
     uint32_t width, height, item_count;
-    struct gpu_buffer items; // indices of moving items
-    struct gpu_kernel mark, join;
-    VkDescriptorSet mark_set, join_sets[2];
+    struct gpu_buffer items;      // indices of moving items
+    struct gpu_buffer rectangles; // per item, eye, and now or a frame ago: first and last pixel
+    struct gpu_buffer list;       // of those marked in a frame, as renderer/shared/tiles.glsl lists tiles
+    struct gpu_kernel lister, mark, join;
+    VkDescriptorSet list_set, mark_set, join_sets[2];
     VkSampler sampler;
 };
 

@@ -33,15 +33,65 @@ static bool strikes(struct faulty_vfs *faulty)
     return true;
 }
 
-static int code_of(const struct faulty_vfs *faulty, int io_code)
+static uint32_t draw(struct faulty_vfs *faulty)
 {
-    if (faulty->fault == FAULT_KILL)
+    faulty->random = faulty->random * 1664525u + 1013904223u;
+    return faulty->random >> 16;
+}
+
+// Keeps what a write is about to cover, until a sync.
+static void note_write(struct faulty_vfs *faulty, sqlite3_file *file, int size, sqlite3_int64 offset)
+{
+    if (faulty->fault != FAULT_POWER || atomic_load(&faulty->countdown) == 0)
+        return;
+    if (!faulty->unsynced)
+        faulty->unsynced = calloc(FAULTY_UNSYNCED, sizeof *faulty->unsynced);
+    if (!faulty->unsynced || faulty->unsynced_count == FAULTY_UNSYNCED)
+        abort();
+    struct faulty_write *write = &faulty->unsynced[faulty->unsynced_count++];
+    *write = (struct faulty_write){file, offset, size, malloc((size_t)size)};
+    if (!write->before)
+        abort();
+    file->pMethods->xRead(file, write->before, size, offset); // beyond the end: zeros
+}
+
+static void confirm_writes(struct faulty_vfs *faulty, const sqlite3_file *file)
+{
+    int kept = 0;
+    for (int i = 0; i < faulty->unsynced_count; i++) {
+        if (faulty->unsynced[i].file == file)
+            free(faulty->unsynced[i].before);
+        else
+            faulty->unsynced[kept++] = faulty->unsynced[i];
+    }
+    faulty->unsynced_count = kept;
+}
+
+// A disk writes in any order: of three writes one is whole, one is gone, one is torn.
+static void cut_power(struct faulty_vfs *faulty)
+{
+    for (int i = faulty->unsynced_count - 1; i >= 0; i--) {
+        const struct faulty_write *write = &faulty->unsynced[i];
+        uint32_t fate = draw(faulty) % 3;
+        int kept = fate == 0 ? write->size : fate == 1 ? 0 : (int)(draw(faulty) % (uint32_t)write->size);
+        write->file->pMethods->xWrite(write->file, (const char *)write->before + kept, write->size - kept,
+                                      write->offset + kept);
+    }
+}
+
+static int code_of(struct faulty_vfs *faulty, int io_code)
+{
+    if (faulty->fault == FAULT_POWER)
+        cut_power(faulty);
+    if (faulty->fault == FAULT_KILL || faulty->fault == FAULT_POWER)
         raise(SIGKILL);
     return faulty->fault == FAULT_FULL || faulty->fault == FAULT_FULL_ONCE ? SQLITE_FULL : io_code;
 }
 
 static int faulty_close(sqlite3_file *file)
 {
+    confirm_writes(((struct faulty_file *)file)->faulty,
+                   real_of(file)); // the entries name a file that goes away
     return real_of(file)->pMethods ? real_of(file)->pMethods->xClose(real_of(file)) : SQLITE_OK;
 }
 
@@ -53,6 +103,7 @@ static int faulty_read(sqlite3_file *file, void *bytes, int size, sqlite3_int64 
 static int faulty_write(sqlite3_file *file, const void *bytes, int size, sqlite3_int64 offset)
 {
     struct faulty_vfs *faulty = ((struct faulty_file *)file)->faulty;
+    note_write(faulty, real_of(file), size, offset);
     bool fails = strikes(faulty);
     int code = real_of(file)->pMethods->xWrite(real_of(file), bytes, fails ? size / 2 : size, offset);
     return fails ? code_of(faulty, SQLITE_IOERR_WRITE) : code;
@@ -69,8 +120,12 @@ static int faulty_sync(sqlite3_file *file, int flags)
 {
     struct faulty_vfs *faulty = ((struct faulty_file *)file)->faulty;
     atomic_fetch_add(&faulty->syncs, 1);
-    return strikes(faulty) ? code_of(faulty, SQLITE_IOERR_FSYNC)
-                           : real_of(file)->pMethods->xSync(real_of(file), flags);
+    if (strikes(faulty))
+        return code_of(faulty, SQLITE_IOERR_FSYNC);
+    int code = real_of(file)->pMethods->xSync(real_of(file), flags);
+    if (code == SQLITE_OK)
+        confirm_writes(faulty, real_of(file));
+    return code;
 }
 
 static int faulty_size(sqlite3_file *file, sqlite3_int64 *size)
@@ -182,6 +237,7 @@ void faulty_vfs_register(struct faulty_vfs *faulty, const char *name)
 
 void faulty_vfs_unregister(struct faulty_vfs *faulty)
 {
+    free(faulty->unsynced);
     sqlite3_vfs_unregister(&faulty->vfs);
 }
 
@@ -190,6 +246,12 @@ void faulty_vfs_arm(struct faulty_vfs *faulty, enum fault fault, int n)
     faulty->fault = fault;
     atomic_store(&faulty->failed, false);
     atomic_store(&faulty->countdown, n);
+}
+
+void faulty_vfs_arm_power(struct faulty_vfs *faulty, int n, uint32_t seed)
+{
+    faulty->random = seed;
+    faulty_vfs_arm(faulty, FAULT_POWER, n);
 }
 
 bool faulty_vfs_disarm(struct faulty_vfs *faulty)

@@ -37,10 +37,11 @@ static void test_session(void **state)
     expect_result(store_set_consent(store, 1, "2026-01-02T03:04:06Z", "v2", &error), STORE_OK, &error);
     expect_result(store_set_consent(store, 1, "2026-01-02T03:04:06Z", NULL, &error), STORE_REFUSED, &error);
     expect_result(store_set_consent(store, 9, "2026-01-02T03:04:06Z", "v2", &error), STORE_REFUSED, &error);
-    expect_result(store_end_session(store, 1, "finished", "2026-01-02T04:00:00Z", &error), STORE_REFUSED,
+    expect_result(store_end_session(store, 1, "finished", "2026-01-02T04:00:00Z", 99, &error), STORE_REFUSED,
                   &error);
-    expect_result(store_end_session(store, 1, "complete", "2026-01-02T04:00:00Z", &error), STORE_OK, &error);
-    expect_result(store_end_session(store, 1, "aborted", "2026-01-02T04:00:00Z", &error), STORE_REFUSED,
+    expect_result(store_end_session(store, 1, "complete", "2026-01-02T04:00:00Z", 99, &error), STORE_OK,
+                  &error);
+    expect_result(store_end_session(store, 1, "aborted", "2026-01-02T04:00:00Z", 99, &error), STORE_REFUSED,
                   &error);
     expect_sentence(&error, "session 1 is not running");
     fixture_close(store);
@@ -271,8 +272,8 @@ static void test_answers(void **state)
                                       .expected = NAN,
                                       .answered_ns = 6,
                                       .ends_trial = true};
-    expect_result(store_answer_response(store, &response, &id, &error), STORE_OK, &error);
-    expect_result(store_answer_response(store, &response, &id, &error), STORE_REFUSED, &error);
+    expect_result(store_answer_responses(store, &response, 1, &id, &error), STORE_OK, &error);
+    expect_result(store_answer_responses(store, &response, 1, &id, &error), STORE_REFUSED, &error);
     assert_int_equal(query(path, "SELECT count(*) FROM response WHERE expected IS NULL AND device IS NULL"), 1);
     assert_int_equal(query(path, "SELECT count(*) FROM trial WHERE status = 'done'"), 4);
     fixture_close(store);
