@@ -322,6 +322,8 @@ double spheres_seen(const struct spheres *spheres, uint32_t sphere, int eye, dou
         return 0.0;
     if (isfinite(spheres->round_s))
         time_s = fmod(fmax(time_s, 0.0), spheres->round_s);
+    if (isfinite(spheres->round_s) && time_s > (spheres->samples - 1) * SPHERES_SAMPLE_S)
+        return 0.0; // a part of a long round that nobody looked at
     const double at = fmin(fmax(time_s / SPHERES_SAMPLE_S, 0.0), (double)(spheres->samples - 1));
     const uint32_t low = (uint32_t)at, high = low + 1 < spheres->samples ? low + 1 : low;
     const uint8_t *seen = &spheres->seen[((size_t)sphere * EYES + (size_t)eye) * spheres->samples];

@@ -1,8 +1,8 @@
 // Writes what the session's state machine reports: trials, answers, exposures and events into the store, and
 // the event lines that others watch. An answer is committed before its line is written.
 //
-// Use: fill a struct recorder -> recorder_init -> recorder_take each machine record in order; after RECORDER_WAIT the same
-// record again, until it is taken. -> recorder_finish. Does not: wait.
+// Use: fill a struct recorder -> recorder_init -> recorder_take each machine record in order; after
+// RECORDER_WAIT the same record again, until it is taken. -> recorder_finish. Does not: wait.
 #ifndef APP_SESSION_RECORD_H
 #define APP_SESSION_RECORD_H
 
@@ -44,7 +44,8 @@ enum recorder_result {
 bool recorder_init(struct recorder *recorder, uint32_t places);
 void recorder_finish(struct recorder *recorder);
 // The condition that a slot of the running trial shows; 0: none.
-int64_t recorder_condition(const struct recorder *recorder, const struct plan_trial *trial, enum plan_slot slot);
+int64_t recorder_condition(const struct recorder *recorder, const struct plan_trial *trial,
+                           enum plan_slot slot);
 
 enum recorder_result recorder_take(struct recorder *recorder, const struct machine_record *record, char *error,
                                    size_t error_size);

@@ -134,6 +134,7 @@ static void note_effective(struct stage *stage, int slot)
 static bool make_option(struct stage *stage, int slot, uint32_t condition, const struct turn *turn,
                         struct renderer_settings settings, char *error, size_t error_size)
 {
+    char why[256];
     const struct plan *plan = stage->desc.plan;
     struct mode_choice *now = &stage->now[slot];
     if (stage_choice(&plan->conditions[condition], now)) {
@@ -143,6 +144,13 @@ static bool make_option(struct stage *stage, int slot, uint32_t condition, const
                         turn->trial->adjust_start, now);
         settings.adjustable =
             turn && live_adjusts(turn->trial) && turn->trial->test_slot == (enum plan_slot)slot;
+        if (settings.adjustable && !mode_check(now, why, sizeof why))
+            *now = stage->conditions[slot];
+        if (settings.adjustable && !now->mode->set) {
+            snprintf(error, error_size, "the mode '%s' cannot be changed while it runs; adjust another one",
+                     now->mode->name);
+            return false;
+        }
         stage->options[slot] =
             renderer_option_create(stage->desc.renderer, stage->scene->resident, now, &settings);
     }
@@ -234,10 +242,11 @@ void stage_adjust(struct stage *stage, const struct machine_view *view)
     if (!trial || !view->adjusted)
         return;
     for (int slot = 0; slot < 2; slot++) {
+        char why[256];
         struct mode_choice wanted = stage->conditions[slot];
         live_choice(stage->desc.plan->protocol, trial, (enum plan_slot)slot, NAN, view->adjusted, &wanted);
         if (!stage->options[slot] || live_same(&wanted, &stage->now[slot]) ||
-            !renderer_option_set(stage->options[slot], &wanted))
+            !mode_check(&wanted, why, sizeof why) || !renderer_option_set(stage->options[slot], &wanted))
             continue;
         stage->now[slot] = wanted;
         note_effective(stage, slot);

@@ -51,7 +51,7 @@ void stage_destroy(struct stage *stage);                   // NULL is fine
 // False with a sentence.
 bool stage_prepare(struct stage *stage, const struct machine_view *view, char *error, size_t error_size);
 // Gives the option under test the values it has in this frame. Values that contradict each other leave it as it
-// is.
+// was; stage_effective tells.
 void stage_adjust(struct stage *stage, const struct machine_view *view);
 // What an option is drawn with now; NULL: no such option.
 const struct mode_choice *stage_now(const struct stage *stage, enum plan_slot slot);

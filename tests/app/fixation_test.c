@@ -27,6 +27,8 @@ static const char protocol[] =
     "settings: {advance: auto, rest_s: 0.2, question: prefer, moving_objects: off}\n"
     "questions:\n"
     "  prefer: {text: \"Which is the original?\", correct: reference}\n"
+    "  seen: {text: How many?, count: [0, 20]}\n"
+    "  good: {text: How good?, scale: [1, 10], labels: [bad, good]}\n"
     "instructions: Choose.\n"
     "consent: {version: \"1\", text: Yes?}\n"
     "blocks:\n"
@@ -42,7 +44,15 @@ static const char protocol[] =
     "    options: [warped, regular]\n"
     "    staircase: {parameter: epsilon, method: 1up2down, larger: easier, level: {min: 0.1, max: 1}, start: "
     "0.6,\n"
-    "                steps: [0.1], trials: 2}\n";
+    "                steps: [0.1], trials: 2}\n"
+    "  - name: five\n"
+    "    kind: adjust\n"
+    "    options: [warped, regular]\n"
+    "    adjust: {epsilon: {start: [0.5, 0.5], step: 0.05}}\n"
+    "  - name: six\n"
+    "    kind: task\n"
+    "    options: [warped]\n"
+    "    settings: {question: good, spheres: [7, 7], count: seen, view_s: 2}\n";
 
 static const char *ask(const char *query)
 {
@@ -95,23 +105,47 @@ static void the_path_is_taken_once_a_showing(void **state)
            "4|1|1");
 }
 
-static void a_staircase_s_level_is_what_was_drawn(void **state)
+#define WHERE_TESTED                                                                                           \
+    " FROM frame f JOIN trial t ON t.id = f.trial_id JOIN condition c ON c.id = f.condition_id WHERE option "  \
+    "= "                                                                                                       \
+    "test_slot AND block "
+
+// The level is in the condition of the frame, so nothing differs from it.
+static void a_staircase_s_level_is_the_condition(void **state)
 {
     (void)state;
-    // 0.6 differs from the default of 0.2; the second trial's level is where the first answer led.
-    expect("SELECT count(*) > 10, count(DISTINCT effective) FROM frame f JOIN trial t ON t.id = f.trial_id "
-           "WHERE block "
-           "= 'four' AND option = test_slot AND condition_id IS NOT NULL AND ordinal = (SELECT min(ordinal) "
-           "FROM trial "
-           "WHERE block = 'four')",
-           "1|1");
-    expect("SELECT DISTINCT json_extract(effective, '$.epsilon') FROM frame f JOIN trial t ON t.id = "
-           "f.trial_id WHERE "
-           "block = 'four' AND option = test_slot AND condition_id IS NOT NULL ORDER BY f.id LIMIT 1",
-           "0.6");
-    expect("SELECT count(*)" SEEN "<> 'four' AND effective IS NOT NULL", "0");
-    expect("SELECT count(*)" SEEN "= 'four' AND option <> test_slot AND effective IS NOT NULL", "0");
-    expect("SELECT count(*)" SEEN "= 'four' AND option = test_slot AND effective IS NULL", "0");
+    expect("SELECT json_extract(parameters, '$.epsilon')" WHERE_TESTED "= 'four' ORDER BY f.id LIMIT 1", "0.6");
+    expect("SELECT count(*) > 10, count(effective)" WHERE_TESTED "= 'four'", "1|0");
+    expect("SELECT count(*)" SEEN "IN ('one', 'two', 'three') AND effective IS NOT NULL", "0");
+}
+
+// Each frame of an adjusted option says the values in force: those of the last step before it.
+static void adjusted_values_are_what_was_drawn(void **state)
+{
+    (void)state;
+    expect("SELECT count(*) > 3 FROM adjust_step", "1");
+    expect("SELECT count(*) > 10, count(DISTINCT effective) > 1" WHERE_TESTED "= 'five'", "1|1");
+    expect("SELECT count(*)" WHERE_TESTED
+           "= 'five' AND abs(coalesce(json_extract(effective, '$.epsilon'), 0.2) - coalesce((SELECT value FROM "
+           "adjust_step s WHERE s.trial_id = t.id AND s.at_ns <= f.start_ns ORDER BY s.at_ns DESC, s.rowid "
+           "DESC LIMIT "
+           "1), 0.5)) > 1e-9",
+           "0");
+    expect("SELECT count(*)" SEEN "= 'five' AND option <> test_slot AND effective IS NOT NULL", "0");
+}
+
+// The spheres' rows say as many as the expected answer does, for each showing.
+static void spheres_are_there_and_told(void **state)
+{
+    (void)state;
+    expect("SELECT count(*), min(expected) FROM response WHERE question = 'seen'", "1|7.0");
+    expect("SELECT count(*), count(DISTINCT json_extract(detail, '$.at')) FROM event WHERE kind = 'sphere'",
+           "7|7");
+    expect("SELECT count(*) FROM event e JOIN trial t ON t.id = e.trial_id WHERE e.kind = 'sphere' AND (block "
+           "<> 'six' "
+           "OR at_ns <> started_ns OR json_extract(detail, '$.of') <> 7)",
+           "0");
+    expect("SELECT count(*) FROM event WHERE kind LIKE 'log_%'", "0");
 }
 
 static int set_up(void **state)
@@ -139,7 +173,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_fovea_is_on_the_target),
         cmocka_unit_test(the_path_is_taken_once_a_showing),
-        cmocka_unit_test(a_staircase_s_level_is_what_was_drawn),
+        cmocka_unit_test(a_staircase_s_level_is_the_condition),
+        cmocka_unit_test(adjusted_values_are_what_was_drawn),
+        cmocka_unit_test(spheres_are_there_and_told),
     };
     return cmocka_run_group_tests(tests, set_up, NULL);
 }
