@@ -38,6 +38,9 @@ struct mode {
     bool (*agree)(const double *values, char *why, size_t why_size);
     struct mode_state *(*create)(const struct mode_setup *setup); // NULL after a logged sentence
     bool (*record)(struct mode_state *state, const struct mode_record *record);
+    // New numbers for an option made with settings.adjustable; words (choices) stay as they are. Makes no
+    // pipeline and no target. False: it cannot. NULL: the mode's values never change while it runs.
+    bool (*set)(struct mode_state *state, const double *values);
     void (*destroy)(struct mode_state *state); // NULL is fine
 };
 

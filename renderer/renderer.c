@@ -2,6 +2,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 void renderer_relay(void *user, int level, const char *sentence)
 {
@@ -129,6 +130,7 @@ struct renderer_option *renderer_option_create(struct renderer *r, struct render
     o->renderer = r;
     o->scene = scene;
     o->mode = choice->mode;
+    memcpy(o->values, choice->values, sizeof o->values);
     o->settings = settings ? *settings : (struct renderer_settings){0};
     const VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
     const struct mode_setup setup = {.gpu = r->gpu,
@@ -150,6 +152,40 @@ struct renderer_option *renderer_option_create(struct renderer *r, struct render
         return o;
     renderer_option_destroy(o);
     return NULL;
+}
+
+static bool can_set(const struct renderer_option *o, const struct mode_choice *choice, char *why,
+                    size_t why_size)
+{
+    if (choice->mode != o->mode || !o->mode->set || !o->settings.adjustable) {
+        snprintf(why, why_size, "an option of mode '%s' that was not made to be changed is to be",
+                 o->mode->name);
+        return false;
+    }
+    for (uint32_t i = 0; i < o->mode->parameter_count; i++) {
+        const struct mode_parameter *p = &o->mode->parameters[i];
+        const double value = choice->values[i];
+        const bool same = !(value < o->values[i]) && !(value > o->values[i]);
+        if (!(value >= p->min && value <= p->max) || (p->choices && !same)) {
+            snprintf(why, why_size, "%s of mode '%s' cannot become %g while it runs", p->name, o->mode->name,
+                     value);
+            return false;
+        }
+    }
+    return mode_check(choice, why, why_size);
+}
+
+bool renderer_option_set(struct renderer_option *o, const struct mode_choice *choice)
+{
+    char why[512];
+    if (!can_set(o, choice, why, sizeof why)) {
+        renderer_relay(o->renderer, RENDERER_ERROR, why);
+        return false;
+    }
+    if (!o->mode->set(o->state, choice->values))
+        return false;
+    memcpy(o->values, choice->values, sizeof o->values);
+    return true;
 }
 
 void renderer_option_destroy(struct renderer_option *o)

@@ -61,6 +61,9 @@ struct renderer_option *renderer_option_create(struct renderer *renderer, struct
                                                const struct mode_choice *choice,
                                                const struct renderer_settings *settings);
 void renderer_option_destroy(struct renderer_option *option);
+// New numbers from the next frame on, for an option made with settings.adjustable; its mode and its switches
+// must be the same. It draws what an option made with them would, history apart. False: it stays as it was.
+bool renderer_option_set(struct renderer_option *option, const struct mode_choice *choice);
 // What was built, why, and its memory, one line each; false: too small.
 bool renderer_option_explain(const struct renderer_option *option, char *out, size_t out_size);
 uint64_t renderer_option_memory(const struct renderer_option *option); // bytes of its targets and buffers
@@ -79,9 +82,24 @@ struct renderer_overlay {
 // NULL removes it.
 bool renderer_set_overlay(struct renderer *renderer, const struct renderer_overlay *overlay);
 
+// What stands over both eyes' pictures whatever the option and the fade: a thin cross with dark edges, or a
+// ball, lit from above.
+enum renderer_mark_kind { RENDERER_MARK_CROSS, RENDERER_MARK_BALL };
+enum { RENDERER_MARKS = 80 };
+struct renderer_mark {
+    enum renderer_mark_kind kind;
+    struct viewing_disc place[EYES]; // the ball's image; a cross fills it from rim to rim
+    double opacity[EYES];            // 0: not in this eye
+    float colour[3];                 // sRGB-encoded, 0..1
+    double fade;                     // 1: gray, as the picture's; 0 for what stands out of every fade
+};
+// For every renderer_show until the next call; copied. Later ones lie over earlier ones. count 0: none. False:
+// more than RENDERER_MARKS, or a place that is not finite.
+bool renderer_set_marks(struct renderer *renderer, const struct renderer_mark *marks, uint32_t count);
+
 // Puts the option's last frame on the screen, mixed with mid gray (sRGB 0.5) in linear light: fade 0 the image,
-// 1 gray; then the overlay. option NULL: gray. With a surface this presents and waits for the display's pace;
-// without, the result only lies ready for renderer_read_screen.
+// 1 gray; then the marks, then the overlay. option NULL: gray. With a surface this presents and waits for the
+// display's pace; without, the result only lies ready for renderer_read_screen.
 bool renderer_show(struct renderer *renderer, struct renderer_option *option, double fade);
 const char *renderer_redraw_name(enum frame_redraw redraw); // "first", "cut", ...; NULL for none
 void renderer_resized(struct renderer *renderer); // the surface changed size; the next show rebuilds its images

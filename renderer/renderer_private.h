@@ -30,6 +30,7 @@ struct renderer_option {
     struct renderer_scene *scene;
     const struct mode *mode;
     struct mode_state *state;
+    double values[MODE_PARAMETERS];
     struct gpu_buffer constants; // shared_frame
     struct gpu_buffer counters;  // shared_counters
     struct mode_explanation explanation;

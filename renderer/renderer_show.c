@@ -1,6 +1,8 @@
 // Screen, overlay, and what the CPU reads back.
 #include "renderer/renderer_private.h"
+#include "renderer/shared/shared.h"
 
+#include <math.h>
 #include <string.h>
 
 bool renderer_set_overlay(struct renderer *r, const struct renderer_overlay *overlay)
@@ -9,6 +11,46 @@ bool renderer_set_overlay(struct renderer *r, const struct renderer_overlay *ove
         return screen_set_overlay(&r->screen, NULL, 0, 0, NULL, NULL);
     return screen_set_overlay(&r->screen, overlay->rgba, overlay->width, overlay->height, overlay->left,
                               overlay->top);
+}
+
+_Static_assert((int)RENDERER_MARKS == (int)SCREEN_MARKS, "the screen takes as many");
+
+static bool fill_mark(const struct renderer_mark *mark, struct shared_mark *out)
+{
+    *out =
+        (struct shared_mark){.kind = mark->kind == RENDERER_MARK_BALL ? SHARED_MARK_BALL : SHARED_MARK_CROSS};
+    memcpy(out->colour, mark->colour, sizeof out->colour);
+    out->fade = (float)fmin(fmax(mark->fade, 0), 1);
+    for (int eye = 0; eye < EYES; eye++) {
+        const struct viewing_disc *d = &mark->place[eye];
+        if (!(mark->opacity[eye] > 0))
+            continue;
+        if (!isfinite(d->x_px + d->y_px + d->unit_from_px[0][0] + d->unit_from_px[0][1] +
+                      d->unit_from_px[1][0] + d->unit_from_px[1][1]))
+            return false;
+        out->eyes[eye] = (struct shared_mark_eye){
+            .centre = {(float)d->x_px, (float)d->y_px},
+            .unit_from_x = {(float)d->unit_from_px[0][0], (float)d->unit_from_px[1][0]},
+            .unit_from_y = {(float)d->unit_from_px[0][1], (float)d->unit_from_px[1][1]},
+            .opacity = (float)fmin(mark->opacity[eye], 1)};
+    }
+    return true;
+}
+
+bool renderer_set_marks(struct renderer *r, const struct renderer_mark *marks, uint32_t count)
+{
+    struct shared_mark filled[RENDERER_MARKS];
+    for (uint32_t i = 0; i < count && i < RENDERER_MARKS; i++)
+        if (!fill_mark(&marks[i], &filled[i])) {
+            renderer_relay(r, RENDERER_ERROR, "a mark's place is not finite");
+            return false;
+        }
+    if (count > RENDERER_MARKS) {
+        renderer_relay(r, RENDERER_ERROR, "more marks are asked for than RENDERER_MARKS");
+        return false;
+    }
+    screen_set_marks(&r->screen, filled, count);
+    return true;
 }
 
 bool renderer_show(struct renderer *r, struct renderer_option *option, double fade)

@@ -54,3 +54,25 @@ struct dvec3 viewing_pixel_direction(const struct viewing_fov *fov, uint32_t wid
                       fov->tan_up - y / height * (fov->tan_down + fov->tan_up), -1};
     return dvec3_normalise(d);
 }
+
+// A cone of half angle r around a direction t from the axis cuts the plane at distance 1 in an ellipse from
+// tan(t - r) to tan(t + r); its other half axis is sin r / sqrt(cos^2 t - sin^2 r).
+bool viewing_disc(const struct viewing_fov *fov, uint32_t width, uint32_t height, struct dvec3 d,
+                  double radius_deg, struct viewing_disc *out)
+{
+    const double side = hypot(d.x, d.y), t = atan2(side, -d.z), r = radius_deg * rad_per_deg;
+    if (!(r > 0) || !(t + r < 85 * rad_per_deg))
+        return false;
+    const double near = tan(t - r), far = tan(t + r), middle = (near + far) / 2, along = (far - near) / 2;
+    const double across = sin(r) / sqrt(cos(t) * cos(t) - sin(r) * sin(r));
+    const double ex = side > 0 ? d.x / side : 1, ey = side > 0 ? d.y / side : 0;
+    const double px = (fov->tan_left + fov->tan_right) / width, py = (fov->tan_down + fov->tan_up) / height;
+    const double mixed = ex * ey * (1 / along - 1 / across);
+    *out = (struct viewing_disc){
+        .x_px = (middle * ex + fov->tan_left) / px,
+        .y_px = (fov->tan_up - middle * ey) / py,
+        .unit_from_px = {{(ex * ex / along + ey * ey / across) * px, -mixed * py},
+                         {mixed * px, -(ey * ey / along + ex * ex / across) * py}},
+    };
+    return true;
+}

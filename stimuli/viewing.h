@@ -36,6 +36,15 @@ bool viewing_pixel(const struct viewing_fov *fov, uint32_t width, uint32_t heigh
 struct dvec3 viewing_pixel_direction(const struct viewing_fov *fov, uint32_t width, uint32_t height, double x,
                                      double y);
 
+// A ball's image: an ellipse, longer along the way from the image's axis.
+struct viewing_disc {
+    double x_px, y_px;         // its middle, from the upper left corner
+    double unit_from_px[2][2]; // takes pixels from there to the unit disc, right and up positive
+};
+// False where the ball is not wholly in front of the eye.
+bool viewing_disc(const struct viewing_fov *fov, uint32_t width, uint32_t height, struct dvec3 direction,
+                  double radius_deg, struct viewing_disc *out);
+
 enum gaze_eye { GAZE_LEFT, GAZE_RIGHT, GAZE_BOTH };
 
 // One tracker sample. Angles as above; NaN where not valid. pupil_mm and confidence are NaN where not known.

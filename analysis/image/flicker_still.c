@@ -84,11 +84,6 @@ void image_flicker_still_destroy(struct image_flicker_still *flicker)
     free(flicker);
 }
 
-void image_flicker_still_cut(struct image_flicker_still *flicker)
-{
-    flicker->begun = 0;
-}
-
 static bool reserve(struct image_flicker_still *flicker, uint32_t width, uint32_t height)
 {
     if (width == flicker->width && height == flicker->height)

@@ -36,7 +36,6 @@ struct image_flicker_still; // owned
 // positive.
 struct image_flicker_still *image_flicker_still_create(uint32_t block_frames, double frames_hz);
 void image_flicker_still_destroy(struct image_flicker_still *flicker); // NULL is fine
-void image_flicker_still_cut(struct image_flicker_still *flicker);     // forgets a block begun
 
 // Adds a frame; the one that fills a block adds that block's pixels to `sum`, by the rings of that frame. A
 // frame of another size begins a new block. False, with sum and block untouched, for images of different or

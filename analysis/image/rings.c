@@ -7,15 +7,8 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 const double image_ring_limits_deg[IMAGE_RINGS + 1] = {0, 5, 15, 30, (double)INFINITY};
-
-const char *image_region_name(int region)
-{
-    static const char *const names[IMAGE_REGIONS] = {"0-5", "5-15", "15-30", "30+", "whole"};
-    return region >= 0 && region < IMAGE_REGIONS ? names[region] : NULL;
-}
 
 // A row is a plane through the eye; it cuts each cone narrower than a right angle at most twice, so three
 // limits make at most seven runs.
@@ -33,7 +26,6 @@ struct image_rings {
     double *weights; // width * height, owned
     struct row_runs *rows;
     uint32_t rows_capacity;
-    uint64_t pixels[IMAGE_REGIONS];
 };
 
 struct image_rings *image_rings_create(void)
@@ -93,9 +85,6 @@ static void set_row(struct image_rings *rings, uint32_t y)
             row->run[row->count++] = (struct image_ring_run){x, x, region};
         row->run[row->count - 1].end = x + 1;
     }
-    for (uint32_t i = 0; i < row->count; i++)
-        if (row->run[i].region != IMAGE_WHOLE)
-            rings->pixels[row->run[i].region] += row->run[i].end - row->run[i].begin;
 }
 
 static bool same_number(double a, double b)
@@ -115,7 +104,6 @@ bool image_rings_set(struct image_rings *rings, uint32_t width, uint32_t height,
     if (image_rings_fit(rings, width, height) && same_view(&rings->view, view))
         return true;
     rings->width = rings->height = 0;
-    memset(rings->pixels, 0, sizeof rings->pixels);
     if (width == 0 || height == 0 || !image_view_ok(view) || !reserve(rings, width, height))
         return false;
     rings->width = width;
@@ -123,23 +111,12 @@ bool image_rings_set(struct image_rings *rings, uint32_t width, uint32_t height,
     rings->view = *view;
     for (uint32_t y = 0; y < height; y++)
         set_row(rings, y);
-    rings->pixels[IMAGE_WHOLE] = (uint64_t)width * height;
     return true;
 }
 
 bool image_rings_fit(const struct image_rings *rings, uint32_t width, uint32_t height)
 {
     return rings->width == width && rings->height == height && width > 0;
-}
-
-const struct image_view *image_rings_view(const struct image_rings *rings)
-{
-    return &rings->view;
-}
-
-uint64_t image_rings_pixels(const struct image_rings *rings, int region)
-{
-    return rings->pixels[region];
 }
 
 const struct image_ring_run *image_rings_runs(const struct image_rings *rings, uint32_t y, uint32_t *out_count)
@@ -198,14 +175,6 @@ void image_ring_sum_row(struct image_ring_sum *sum, const struct image_rings *ri
             sum->sum[run->region] += part;
             sum->count[run->region] += counted;
         }
-    }
-}
-
-void image_ring_sum_join(struct image_ring_sum *sum, const struct image_ring_sum *other)
-{
-    for (int i = 0; i < IMAGE_REGIONS; i++) {
-        sum->sum[i] += other->sum[i];
-        sum->count[i] += other->count[i];
     }
 }
 

@@ -17,7 +17,6 @@
 enum { IMAGE_RINGS = 4, IMAGE_WHOLE = IMAGE_RINGS, IMAGE_REGIONS };
 
 extern const double image_ring_limits_deg[IMAGE_RINGS + 1]; // 0, 5, 15, 30, infinity
-const char *image_region_name(int region);                  // "0-5", "5-15", "15-30", "30+", "whole"
 
 // Neighbouring pixels of a row in one ring; region IMAGE_WHOLE without a gaze.
 struct image_ring_run {
@@ -33,13 +32,11 @@ void image_rings_destroy(struct image_rings *rings); // NULL is fine
 bool image_rings_set(struct image_rings *rings, uint32_t width, uint32_t height, const struct image_view *view);
 
 bool image_rings_fit(const struct image_rings *rings, uint32_t width, uint32_t height); // set for this size
-const struct image_view *image_rings_view(const struct image_rings *rings);
-uint64_t image_rings_pixels(const struct image_rings *rings, int region);
 // A row's runs from left to right, at most IMAGE_RINGS * 2 of them; and its pixels' weights (fc(e) / fc(0))^2.
 const struct image_ring_run *image_rings_runs(const struct image_rings *rings, uint32_t y, uint32_t *out_count);
 const double *image_rings_weights(const struct image_rings *rings, uint32_t y);
 
-// Sums over regions. Private but for zeroing, copying and image_ring_sum_join().
+// Sums over regions. Private but for zeroing and copying.
 struct image_ring_sum {
     double sum[IMAGE_REGIONS];
     uint64_t count[IMAGE_REGIONS];
@@ -49,7 +46,6 @@ struct image_ring_sum {
 // pixel x0, `count` pixels follow one another.
 void image_ring_sum_row(struct image_ring_sum *sum, const struct image_rings *rings, uint32_t y, uint32_t x0,
                         uint32_t count, const float *values, const uint8_t *mask);
-void image_ring_sum_join(struct image_ring_sum *sum, const struct image_ring_sum *other);
 double image_ring_mean(const struct image_ring_sum *sum, int region); // NaN where nothing was added
 
 #endif

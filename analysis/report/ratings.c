@@ -87,7 +87,12 @@ static bool add_rating(void *user, const struct store_rating_row *row)
         r->not_done++;
         return true;
     }
-    if (sample_trial_excluded(f->sample, f->file, row->trial_id)) {
+    if (strcmp(row->trial_kind, "practice") == 0 || strcmp(row->trial_kind, "catch") == 0 ||
+        strcmp(row->trial_kind, "null") == 0) {
+        r->other_kinds++;
+        return true;
+    }
+    if (sample_ratings_excluded(f->sample, f->file, row->trial_id)) {
         r->excluded++;
         return true;
     }

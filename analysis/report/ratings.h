@@ -33,8 +33,8 @@ struct ratings {
     double conf;
     size_t question_count;
     struct rating_question *questions;
-    int64_t used;                                   // ratings in pairs
-    int64_t not_done, excluded, no_condition, more; // ratings left out
+    int64_t used;                                                // ratings in pairs
+    int64_t not_done, other_kinds, excluded, no_condition, more; // ratings left out
 };
 
 bool ratings_load(struct ratings *out, struct sample *sample, double conf, char *error, size_t error_size);

@@ -61,6 +61,7 @@ static bool write_page(const struct report *r, char *error, size_t error_size)
     report_choices(r);
     report_toggles(r);
     report_ratings(r);
+    report_checks(r);
     report_frames(r);
     if (!report_quality(r, error, error_size))
         return false;
@@ -141,6 +142,34 @@ static bool write_to(struct report *r, const char *path, const char *temporary, 
     return false;
 }
 
+static bool load_tests(struct report_tests *out, struct report *r, enum sample_rules rules, char *error,
+                       size_t error_size)
+{
+    sample_apply(r->sample, rules);
+    bool ok = choices_load(&out->choices, r->sample, r->conf, error, error_size) &&
+              ratings_load(&out->ratings, r->sample, r->conf, error, error_size);
+    sample_apply(r->sample, SAMPLE_RULES);
+    return ok;
+}
+
+static bool load(struct report *r, char *error, size_t error_size)
+{
+    return choices_load(&r->choices, r->sample, r->conf, error, error_size) &&
+           ratings_load(&r->ratings, r->sample, r->conf, error, error_size) &&
+           checks_load(&r->checks, r->sample, r->conf, error, error_size) &&
+           frames_load(&r->frames, r->sample, error, error_size) &&
+           audit_load(&r->audit, r->sample, error, error_size) &&
+           (r->sample->exclusion_count == 0 ||
+            (load_tests(&r->all, r, SAMPLE_ALL_DATA, error, error_size) &&
+             load_tests(&r->stricter, r, SAMPLE_STRICTER, error, error_size)));
+}
+
+static void free_tests(struct report_tests *tests)
+{
+    choices_free(&tests->choices);
+    ratings_free(&tests->ratings);
+}
+
 static void free_figures(struct report *r)
 {
     free(r->choices_figure.wide);
@@ -163,15 +192,17 @@ bool report_write(struct sample *sample, double conf, const char *path, char *er
         snprintf(temporary, size, "%s.part-%ld", path, (long)getpid());
     else
         snprintf(error, error_size, "not enough memory");
-    ok = ok && choices_load(&r.choices, sample, conf, error, error_size) &&
-         ratings_load(&r.ratings, sample, conf, error, error_size) &&
-         frames_load(&r.frames, sample, error, error_size) && draw_choices(&r, error, error_size) &&
+    ok = ok && load(&r, error, error_size) && draw_choices(&r, error, error_size) &&
          draw_ratings(&r, error, error_size) && draw_frames(&r, error, error_size) &&
          write_to(&r, path, temporary, error, error_size);
     free_figures(&r);
     choices_free(&r.choices);
     ratings_free(&r.ratings);
     frames_free(&r.frames);
+    checks_free(&r.checks);
+    audit_free(&r.audit);
+    free_tests(&r.all);
+    free_tests(&r.stricter);
     free(temporary);
     return ok;
 }

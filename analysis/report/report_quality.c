@@ -144,7 +144,8 @@ static void left_out(const struct report *r)
                 "its own.</p>\n",
                 sample_repeaters(r->sample));
     int64_t all = sessions + c->excluded + c->not_done + c->other_kinds + c->no_test_slot + t->excluded +
-                  t->not_done + t->no_condition + t->more + (int64_t)r->sample->left_out_simulated;
+                  t->other_kinds + t->not_done + t->no_condition + t->more +
+                  (int64_t)r->sample->left_out_simulated;
     fputs(all ? "<p>Left out of the numbers above:</p>\n<ul>\n" : "<p>Nothing was left out.</p>\n", r->out);
     count_item(r, (int64_t)r->sample->left_out_simulated, "simulated sessions");
     count_item(r, sessions, "excluded sessions");
@@ -152,6 +153,7 @@ static void left_out(const struct report *r)
     count_item(r, c->not_done, "answers to trials that are not done");
     count_item(r, c->other_kinds, "answers to practice, catch, null and staircase trials");
     count_item(r, c->no_test_slot, "answers to trials without a test option");
+    count_item(r, t->other_kinds, "ratings in practice, catch and null trials");
     count_item(r, t->excluded, "ratings in excluded trials");
     count_item(r, t->not_done, "ratings in trials that are not done");
     count_item(r, t->no_condition, "ratings that belong to no option");
@@ -198,7 +200,11 @@ bool report_quality(const struct report *r, char *error, size_t error_size)
     fputs("<h2>Quality and exclusions</h2>\n", r->out);
     left_out(r);
     exclusions_table(r);
-    return sessions_table(r, error, error_size);
+    report_what_if(r);
+    if (!sessions_table(r, error, error_size))
+        return false;
+    report_audit(r);
+    return true;
 }
 
 void report_definitions(const struct report *r)

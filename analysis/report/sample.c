@@ -41,12 +41,18 @@ bool sample_keep_all(struct sample *sample, const char **texts[], size_t count)
     return true;
 }
 
-size_t sample_find_session(const struct sample *sample, size_t file, int64_t id)
+size_t sample_any_session(const struct sample *sample, size_t file, int64_t id)
 {
     for (size_t i = 0; i < sample->session_count; i++)
         if (sample->sessions[i].file == file && sample->sessions[i].id == id)
-            return sample->sessions[i].excluded ? SAMPLE_NONE : i;
+            return i;
     return SAMPLE_NONE;
+}
+
+size_t sample_find_session(const struct sample *sample, size_t file, int64_t id)
+{
+    size_t i = sample_any_session(sample, file, id);
+    return i == SAMPLE_NONE || sample->sessions[i].excluded ? SAMPLE_NONE : i;
 }
 
 size_t sample_find_condition(const struct sample *sample, size_t file, int64_t id)
@@ -69,14 +75,41 @@ size_t sample_repeaters(const struct sample *sample)
     return repeaters;
 }
 
-bool sample_trial_excluded(const struct sample *sample, size_t file, int64_t trial_id)
+static bool excluded(const struct sample *sample, size_t file, int64_t trial_id, bool ratings)
 {
     for (size_t i = 0; i < sample->exclusion_count; i++) {
         const struct sample_exclusion *e = &sample->exclusions[i];
-        if (e->applied && e->file == file && e->trial_id == trial_id && trial_id != 0)
+        if (e->applied && e->file == file && e->trial_id == trial_id && trial_id != 0 &&
+            (ratings || !e->ratings_only))
             return true;
     }
     return false;
+}
+
+bool sample_trial_excluded(const struct sample *sample, size_t file, int64_t trial_id)
+{
+    return excluded(sample, file, trial_id, false);
+}
+
+bool sample_ratings_excluded(const struct sample *sample, size_t file, int64_t trial_id)
+{
+    return excluded(sample, file, trial_id, true);
+}
+
+void sample_apply(struct sample *sample, enum sample_rules rules)
+{
+    for (size_t i = 0; i < sample->session_count; i++)
+        sample->sessions[i].excluded = false;
+    for (size_t k = 0; k < sample->exclusion_count; k++) {
+        struct sample_exclusion *e = &sample->exclusions[k];
+        e->applied =
+            rules == SAMPLE_STRICTER || (rules == SAMPLE_RULES && strcmp(e->rule_set, "stricter") != 0);
+        for (size_t i = 0; i < sample->session_count; i++) {
+            struct sample_session *s = &sample->sessions[i];
+            if (s->file == e->file && (s->id == e->session_id || s->participant_id == e->participant_id))
+                s->excluded = s->excluded || e->applied;
+        }
+    }
 }
 
 static bool open_files(struct sample *sample, const char *const *paths, size_t path_count, char *error,

@@ -3,8 +3,9 @@
 //
 // Use: sample_load(), then any of choices.h, ratings.h and frames.h, then sample_free().
 // A file given twice, and a session found in two files, are refused rather than counted twice. Exclusions of
-// the rule sets 'planned' and 'late' are applied, 'stricter' ones are only listed. Does not: change a file,
-// decide on exclusions, or draw anything. All texts are owned by the sample.
+// the rule sets 'planned' and 'late' are applied, 'stricter' ones are only listed, unless sample_apply() says
+// otherwise. Does not: change a file, decide on exclusions, or draw anything. All texts are owned by the
+// sample.
 #ifndef ANALYSIS_REPORT_SAMPLE_H
 #define ANALYSIS_REPORT_SAMPLE_H
 
@@ -17,6 +18,9 @@
 #define SAMPLE_NONE SIZE_MAX
 
 enum { SAMPLE_ERROR_SIZE = 640 };
+
+// Which exclusions hold: none, those of the sets 'planned' and 'late', or all.
+enum sample_rules { SAMPLE_ALL_DATA, SAMPLE_RULES, SAMPLE_STRICTER };
 
 struct sample_session {
     size_t file;
@@ -77,6 +81,7 @@ struct sample_exclusion {
     const char *rule, *rule_set, *reason, *by;
     const char *code; // of the participant; "" where the session is not part of the sample
     bool applied;
+    bool ratings_only; // a choice in the same trial stays
 };
 
 struct sample {
@@ -110,7 +115,13 @@ size_t sample_find_session(const struct sample *sample, size_t file, int64_t id)
 size_t sample_find_condition(const struct sample *sample, size_t file, int64_t id);
 // People with more than one session that is analysed.
 size_t sample_repeaters(const struct sample *sample);
+// Whether a choice, and whether ratings, made in a trial are left out.
 bool sample_trial_excluded(const struct sample *sample, size_t file, int64_t trial_id);
+bool sample_ratings_excluded(const struct sample *sample, size_t file, int64_t trial_id);
+// From now on these exclusions hold; what was loaded before stays as it is.
+void sample_apply(struct sample *sample, enum sample_rules rules);
+// As sample_find_session, also of excluded ones.
+size_t sample_any_session(const struct sample *sample, size_t file, int64_t id);
 
 // A copy owned by the sample; NULL where memory ran out.
 const char *sample_keep(struct sample *sample, const char *text);

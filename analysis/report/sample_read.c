@@ -208,14 +208,13 @@ static bool add_exclusion(void *user, const struct store_exclusion_row *row)
                                  .reason = row->reason,
                                  .by = row->by,
                                  .code = "",
-                                 .applied = strcmp(row->rule_set, "stricter") != 0};
+                                 .ratings_only = strstr(row->rule, ":rating_pair") != NULL};
     for (size_t i = 0; i < s->session_count; i++) {
         struct sample_session *session = &s->sessions[i];
         if (session->file != f->file ||
             (session->id != e.session_id && session->participant_id != e.participant_id))
             continue;
         e.code = s->people[session->person].code;
-        session->excluded = session->excluded || e.applied;
     }
     const char **texts[] = {&e.rule, &e.rule_set, &e.reason, &e.by};
     if (!sample_keep_all(s, texts, 4) ||
@@ -254,6 +253,7 @@ bool sample_read(struct sample *s, char *error, size_t error_size)
             snprintf(error, error_size, "%s: %s", store_reader_path(reader), f.refusal);
         return false;
     }
+    sample_apply(s, SAMPLE_RULES);
     unite_conditions(s);
     for (size_t i = 0; i < s->condition_count; i++)
         if (!label_condition(s, i))

@@ -2,6 +2,8 @@
 #ifndef ANALYSIS_REPORT_SECTIONS_H
 #define ANALYSIS_REPORT_SECTIONS_H
 
+#include "analysis/report/audit.h"
+#include "analysis/report/checks.h"
 #include "analysis/report/choices.h"
 #include "analysis/report/frames.h"
 #include "analysis/report/ratings.h"
@@ -15,6 +17,12 @@ struct figure_pair {
     char *wide, *narrow; // NULL where there is nothing to draw
 };
 
+// The tests under other exclusions than those that hold.
+struct report_tests {
+    struct choices choices;
+    struct ratings ratings;
+};
+
 struct report {
     FILE *out;
     struct sample *sample;
@@ -22,6 +30,9 @@ struct report {
     struct choices choices;
     struct ratings ratings;
     struct frames frames;
+    struct checks checks;
+    struct audit audit;
+    struct report_tests all, stricter; // without any exclusion; with those of the set 'stricter' too
     struct figure_pair choices_figure, frames_figure, ratings_figures[REPORT_QUESTIONS];
 };
 
@@ -32,7 +43,10 @@ void report_choices(const struct report *r);
 void report_toggles(const struct report *r);
 void report_ratings(const struct report *r);
 void report_frames(const struct report *r);
+void report_checks(const struct report *r);  // null and catch trials
+void report_what_if(const struct report *r); // the same tests under other exclusions
 bool report_quality(const struct report *r, char *error, size_t error_size);
+void report_audit(const struct report *r); // every frame accounted for
 void report_definitions(const struct report *r);
 
 // Both widths of a figure and its caption, which is HTML.

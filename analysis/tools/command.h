@@ -2,6 +2,8 @@
 #ifndef ANALYSIS_TOOLS_COMMAND_H
 #define ANALYSIS_TOOLS_COMMAND_H
 
+#include <stdbool.h>
+
 enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_USAGE = 2 };
 
 struct command {
@@ -11,6 +13,10 @@ struct command {
     // argv[0] is the subcommand's name. Returns the exit code.
     int (*run)(const struct command *command, int argc, char **argv);
 };
+
+struct sample;
+// `fovstats frames --audit`: prints the audit of a loaded sample; returns the exit code.
+int frames_audit(const struct command *command, struct sample *sample, bool json);
 
 extern const struct command command_binom, command_choices, command_ratings, command_frames, command_report;
 

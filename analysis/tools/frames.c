@@ -6,12 +6,16 @@
 
 #include <inttypes.h>
 #include <stdio.h>
+#include <string.h>
 
 static const char help[] =
-    "usage: fovstats frames DB... [--simulated] [--json]\n"
+    "usage: fovstats frames DB... [--audit] [--simulated] [--json]\n"
     "\n"
     "Frame times in milliseconds per option and phase: GPU, CPU and interval between frames (median, 95th\n"
     "and 99th percentile, type 7), late frames, and pixels shaded. Gray frames and text are not rendered.\n"
+    "  --audit      instead: rows against frames submitted, late frames by phase, stale gaze, foveation that "
+    "was not\n"
+    "               the one asked for, and the fade of every switch against the protocol; names the trials\n"
     "  --simulated  analyse simulated sessions, which are left out otherwise\n"
     "  --json       one object with the groups in an array\n";
 
@@ -95,13 +99,35 @@ static void print_json(const struct sample *sample, const struct frames *f)
     putchar('\n');
 }
 
+// Takes --audit out of the arguments, which the other subcommands do not know.
+static bool take_audit(int *argc, char **argv)
+{
+    int kept = 0;
+    bool options = true, audit = false;
+    for (int i = 0; i < *argc; i++) {
+        options = options && strcmp(argv[i], "--") != 0;
+        if (options && strcmp(argv[i], "--audit") == 0)
+            audit = true;
+        else
+            argv[kept++] = argv[i];
+    }
+    *argc = kept;
+    return audit;
+}
+
 static int run(const struct command *command, int argc, char **argv)
 {
     struct study_arguments arguments;
     struct sample sample;
+    bool audit = take_audit(&argc, argv);
     int code = study_arguments_load(command, argc, argv, false, &arguments, &sample);
     if (code >= 0)
         return code;
+    if (audit) {
+        code = frames_audit(command, &sample, arguments.json);
+        sample_free(&sample);
+        return code;
+    }
     char error[SAMPLE_ERROR_SIZE];
     struct frames f;
     if (!frames_load(&f, &sample, error, sizeof error)) {

@@ -1,5 +1,6 @@
 #include "app/command/walk.h"
 
+#include "app/command/options.h"
 #include "app/gaze/script.h"
 #include "stimuli/camera_path.h"
 #include "stimuli/viewing.h"
@@ -22,6 +23,17 @@ bool walk_gaze_read(const char *text, struct walk_gaze *out)
     const char *second = end + 1;
     out->y_deg = strtod(second, &end);
     return end != second && !*end && fabs(out->x_deg) <= 180 && fabs(out->y_deg) <= 90;
+}
+
+const char *walk_option(struct walk *walk, const char *name, const char *value)
+{
+    if (strcmp(name, "size") == 0)
+        return options_size(value, &walk->width, &walk->height) ? NULL : "WIDTHxHEIGHT, 16 to 16384 each";
+    if (strcmp(name, "gaze") == 0)
+        return walk_gaze_read(value, &walk->gaze) ? NULL : "centre, script or X,Y in degrees";
+    if (strcmp(name, "fov") == 0)
+        return options_double(value, 1, 170, &walk->fov_deg) ? NULL : "a number of degrees from 1 to 170";
+    return options_double(value, 0, 1e6, &walk->start_s) ? NULL : "a number of seconds from 0 to 1000000";
 }
 
 void walk_frame(const struct walk *walk, const struct scene *scene, uint64_t number, struct frame *out)

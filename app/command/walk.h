@@ -31,6 +31,9 @@ struct walk {
 // "centre", "script" or "X,Y" in degrees, right and up positive.
 bool walk_gaze_read(const char *text, struct walk_gaze *out);
 
+// Takes the value of the option `name`: size, gaze, fov or start. NULL, or what was expected.
+const char *walk_option(struct walk *walk, const char *name, const char *value);
+
 void walk_frame(const struct walk *walk, const struct scene *scene, uint64_t number, struct frame *out);
 
 #endif

@@ -13,10 +13,13 @@ _Static_assert((int)CATALOGUE_PARAMETERS >= (int)MODE_PARAMETERS, "a protocol ho
 
 static const char *const off_on[] = {"off", "on", NULL};
 static const struct catalogue_parameter settings[] = {
-    [STUDY_MOVING_OBJECTS] =
-        {.name = "moving_objects", .unit = "", .min = 0, .max = 1, .fallback = 0, .choices = off_on},
-    [STUDY_SSAO] = {.name = "ssao", .unit = "", .min = 0, .max = 1, .fallback = 0, .choices = off_on},
-    [STUDY_TAA] = {.name = "taa", .unit = "", .min = 0, .max = 1, .fallback = 0, .choices = off_on},
+    [STUDY_MOVING_OBJECTS] = {.name = "moving_objects",
+                              .unit = "",
+                              .max = 1,
+                              .choices = off_on,
+                              .about = "objects of the scene move"},
+    [STUDY_SSAO] = {.name = "ssao", .unit = "", .max = 1, .choices = off_on, .about = "ambient occlusion"},
+    [STUDY_TAA] = {.name = "taa", .unit = "", .max = 1, .choices = off_on, .about = "temporal antialiasing"},
 };
 
 bool study_bind_scene(struct bound_scene *bound, size_t *count, const char *text, char *error,
@@ -49,6 +52,30 @@ const char *study_scene_spec(const struct bound_scene *bound, size_t count, cons
     return name;
 }
 
+const char *study_shown_scene(const struct protocol *protocol, uint32_t scene, const struct bound_scene *bound,
+                              size_t count)
+{
+    const char *name = protocol->scenes[scene], *spec = study_scene_spec(bound, count, name);
+    return spec == name && *protocol->stand_ins[scene] ? protocol->stand_ins[scene] : spec;
+}
+
+// The modes of the papers, README "The modes".
+static const char *const planned_modes[STUDY_PLANNED_MODES] = {
+    "regular",    "time_warped",     "vrs",           "adaptive",
+    "ray_traced", "ray_traced_full", "phase_aligned", "latency_inset"};
+
+static void list_missing(struct study_names *names)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < STUDY_PLANNED_MODES; i++) {
+        size_t m = 0;
+        while (modes[m] && strcmp(modes[m]->name, planned_modes[i]) != 0)
+            m++;
+        if (!modes[m])
+            names->missing[count++] = planned_modes[i];
+    }
+}
+
 static size_t count_modes(size_t *out_parameters)
 {
     size_t count = 0;
@@ -61,8 +88,10 @@ static void copy_modes(struct study_names *names)
 {
     struct catalogue_parameter *next = names->parameters;
     for (size_t m = 0; modes[m]; m++) {
-        names->modes[m] = (struct catalogue_mode){
-            .name = modes[m]->name, .parameters = next, .parameter_count = modes[m]->parameter_count};
+        names->modes[m] = (struct catalogue_mode){.name = modes[m]->name,
+                                                  .parameters = next,
+                                                  .parameter_count = modes[m]->parameter_count,
+                                                  .about = modes[m]->description};
         for (uint32_t i = 0; i < modes[m]->parameter_count; i++) {
             const struct mode_parameter *from = &modes[m]->parameters[i];
             *next++ = (struct catalogue_parameter){.name = from->name,
@@ -70,7 +99,8 @@ static void copy_modes(struct study_names *names)
                                                    .min = from->min,
                                                    .max = from->max,
                                                    .fallback = from->fallback,
-                                                   .choices = from->choices};
+                                                   .choices = from->choices,
+                                                   .about = from->description};
         }
     }
 }
@@ -90,6 +120,7 @@ bool study_names_init(struct study_names *names, const struct bound_scene *bound
         return false;
     }
     copy_modes(names);
+    list_missing(names);
     for (size_t i = 0; i < built_in; i++)
         names->scenes[i] = builtin_scenes[i].name;
     for (size_t i = 0; i < count; i++)
@@ -97,6 +128,7 @@ bool study_names_init(struct study_names *names, const struct bound_scene *bound
     names->catalogue = (struct catalogue){
         .modes = names->modes,
         .mode_count = (uint32_t)mode_count,
+        .missing_modes = names->missing,
         .scenes = names->scenes,
         .scene_count = (uint32_t)(built_in + count),
         .settings = settings,

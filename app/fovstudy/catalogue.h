@@ -11,7 +11,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-enum { STUDY_BOUND_SCENES = 16 };
+enum { STUDY_BOUND_SCENES = 16, STUDY_PLANNED_MODES = 8 };
 
 // --scene NAME=SPEC: a scene of the protocol stands for this built-in or file.
 struct bound_scene {
@@ -21,9 +21,10 @@ struct bound_scene {
 
 struct study_names {
     struct catalogue catalogue;
-    struct catalogue_mode *modes;           // owned
-    struct catalogue_parameter *parameters; // owned, of all modes
-    const char **scenes;                    // owned array of borrowed names
+    struct catalogue_mode *modes;                 // owned
+    struct catalogue_parameter *parameters;       // owned, of all modes
+    const char **scenes;                          // owned array of borrowed names
+    const char *missing[STUDY_PLANNED_MODES + 1]; // modes that are planned and not here
 };
 
 // Settings of rendering, by their index in the catalogue: objects move, ambient occlusion, temporal
@@ -35,6 +36,9 @@ bool study_bind_scene(struct bound_scene *bound, size_t *count, const char *text
                       size_t error_size);
 // What a scene of the protocol stands for: its binding, else its own name.
 const char *study_scene_spec(const struct bound_scene *bound, size_t count, const char *name);
+// What is shown for a scene of the protocol: its binding, else what stands in for it, else its own name.
+const char *study_shown_scene(const struct protocol *protocol, uint32_t scene, const struct bound_scene *bound,
+                              size_t count);
 
 bool study_names_init(struct study_names *names, const struct bound_scene *bound,
                       size_t count); // false: no memory

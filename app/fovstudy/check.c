@@ -1,8 +1,10 @@
-// `fovstudy check`: reads a protocol as `run` would and prints a participant's exact trials; no GPU, nothing
-// written.
+// `fovstudy check`: reads a protocol as `run` would and says what it comes to: a participant's exact trials,
+// the balance over all of them, how long it takes, what it can show. No GPU, nothing written.
 #include "app/command/options.h"
 #include "app/fovstudy/catalogue.h"
 #include "app/fovstudy/check_number.h"
+#include "app/fovstudy/check_report.h"
+#include "app/fovstudy/check_scenes.h"
 #include "app/fovstudy/commands.h"
 #include "studies/engine/plan.h"
 #include "studies/store/store.h"
@@ -10,7 +12,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum option { PARTICIPANT, DB, NUMBER, SEED, SCENE, COUNTS, JSON, OPTIONS };
+enum option { PARTICIPANT, DB, NUMBER, SEED, SCENE, SCENES, COUNTS, JSON, OPTIONS };
+enum { PARTICIPANTS = 20 }; // as language.c says of a file without 'participants'
 
 static const struct option_spec specs[OPTIONS + 1] = {
     [PARTICIPANT] = {"participant", "CODE", "the trials of this participant of --db, or of a new one"},
@@ -18,7 +21,9 @@ static const struct option_spec specs[OPTIONS + 1] = {
     [NUMBER] = {"number", "N", "the trials of participant number N, from 1 (default 1)"},
     [SEED] = {"seed", "N", "instead of the protocol's seed"},
     [SCENE] = {"scene", "NAME=SPEC", "as for run: a name the protocol may use; repeatable"},
-    [COUNTS] = {"counts", "N", "how often each cell got each scene and side over participants 1 to N instead"},
+    [SCENES] = {"scenes", NULL, "load the files bound with --scene, to see their camera paths; may take long"},
+    [COUNTS] = {"counts", "N",
+                "balance and planned tests over participants 1 to N, not the file's 'participants'"},
     [JSON] = {"json", NULL, "print JSON"},
     [OPTIONS] = {NULL, NULL, NULL},
 };
@@ -26,7 +31,7 @@ static const struct option_spec specs[OPTIONS + 1] = {
 struct request {
     const char *protocol, *participant, *database;
     uint64_t number, seed, counts;
-    bool has_number, has_seed, json;
+    bool has_number, has_seed, load, json;
     struct bound_scene scenes[STUDY_BOUND_SCENES];
     size_t scene_count;
 };
@@ -64,6 +69,9 @@ static int set(struct request *out, int option, const char *value)
         return study_bind_scene(out->scenes, &out->scene_count, value, error, sizeof error)
                    ? -1
                    : options_wrong("fovstudy check", "%s", error);
+    case SCENES:
+        out->load = true;
+        return -1;
     default:
         out->json = true;
         return -1;
@@ -78,8 +86,12 @@ static int read_request(struct request *out, int argc, char **argv)
     for (int i = options_next(&options); i != OPTIONS_DONE; i = options_next(&options)) {
         if (i == OPTIONS_HELP) {
             options_help(
-                stdout, "fovstudy check PROTOCOL [--participant CODE --db FILE | --number N] [--json]",
-                "Checks a protocol and prints the trials that a participant would get, in their order.", specs);
+                stdout,
+                "fovstudy check PROTOCOL [--participant CODE --db FILE | --number N] [--counts N] [--json]",
+                "Checks a protocol; prints a participant's trials in their order, the balance over all "
+                "participants, the "
+                "expected duration, the smallest effects that the planned tests find, and what seems odd.",
+                specs);
             return EXIT_DONE;
         }
         if (i == OPTIONS_ERROR)
@@ -109,24 +121,61 @@ static bool look_up(struct request *request)
     return found;
 }
 
-static int print(const struct request *request, const struct protocol *protocol)
+// Remarks of the file itself, and of its scenes.
+static char *gather_remarks(const struct request *request, const struct protocol *protocol, char *error,
+                            size_t error_size)
 {
-    uint64_t seed = request->has_seed ? request->seed : protocol->seed;
-    struct plan *plan = plan_create(protocol, seed, (uint32_t)(request->number - 1));
-    char *text = NULL;
-    if (request->counts)
-        text = request->json ? plan_counts_json(protocol, seed, 0, (uint32_t)request->counts)
-                             : plan_counts_text(protocol, seed, 0, (uint32_t)request->counts);
-    else if (plan)
-        text = request->json ? plan_table_json(plan) : plan_table_text(plan);
-    if (!plan || !text)
-        fprintf(stderr, "fovstudy: out of memory\n");
-    else
+    struct text remarks = {0};
+    for (uint32_t i = 0; i < protocol->remark_count; i++)
+        text_add(&remarks, "%s\n", protocol->remarks[i]);
+    bool ok = check_scenes(request->protocol, protocol, request->scenes, request->scene_count, request->load,
+                           &remarks, error, error_size);
+    char *all = text_take(&remarks);
+    if (ok && !all)
+        snprintf(error, error_size, "out of memory");
+    if (ok)
+        return all;
+    free(all);
+    return NULL;
+}
+
+static bool print(const struct request *request, const struct check_report *report)
+{
+    char *text = request->json ? check_report_json(report) : check_report_text(report);
+    if (text)
         fputs(text, stdout);
-    int status = plan && text ? EXIT_DONE : EXIT_FAILED;
+    bool done = text != NULL;
     free(text);
+    return done;
+}
+
+static bool examine(const struct request *request, const struct protocol *protocol)
+{
+    char error[PROTOCOL_ERROR] = "out of memory";
+    struct check_report report = {.protocol = protocol,
+                                  .seed = request->has_seed ? request->seed : protocol->seed,
+                                  .people = request->counts          ? (uint32_t)request->counts
+                                            : protocol->participants ? protocol->participants
+                                                                     : PARTICIPANTS,
+                                  .people_assumed = !request->counts && !protocol->participants};
+    struct plan *plan = plan_create(protocol, report.seed, (uint32_t)(request->number - 1));
+    char *remarks = plan ? gather_remarks(request, protocol, error, sizeof error) : NULL;
+    bool done = false;
+    if (remarks) {
+        report.plan = plan;
+        report.remarks = remarks;
+        observer_defaults(&report.pace);
+        duration_of(plan, &report.pace, &report.duration);
+        done = plan_carry_over(protocol, report.seed, 0, report.people, report.carry) &&
+               check_analyses_init(&report.analyses, protocol, report.seed, report.people) &&
+               print(request, &report);
+        check_analyses_finish(&report.analyses);
+    }
+    if (!done)
+        fprintf(stderr, "fovstudy: %s\n", error);
+    free(remarks);
     plan_destroy(plan);
-    return status;
+    return done;
 }
 
 int command_check(int argc, char **argv)
@@ -143,12 +192,10 @@ int command_check(int argc, char **argv)
     }
     struct protocol *protocol =
         study_load(request.protocol, &names, request.scenes, request.scene_count, error, sizeof error);
-    status = EXIT_FAILED;
     if (!protocol)
         fprintf(stderr, "fovstudy: %s\n", error);
-    else if (look_up(&request))
-        status = print(&request, protocol);
+    bool done = protocol && look_up(&request) && examine(&request, protocol);
     protocol_destroy(protocol);
     study_names_finish(&names);
-    return status;
+    return done ? EXIT_DONE : EXIT_FAILED;
 }

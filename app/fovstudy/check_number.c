@@ -17,7 +17,7 @@ struct search {
 static bool take_exclusion(void *user, const struct store_exclusion_row *row)
 {
     struct search *search = user;
-    if (row->participant_id && search->excluded_count < HOLDERS)
+    if (row->participant_id && strcmp(row->rule_set, "stricter") != 0 && search->excluded_count < HOLDERS)
         search->excluded[search->excluded_count++] = row->participant_id;
     return true;
 }

@@ -7,9 +7,12 @@ int command_run(int argc, char **argv);
 int command_resume(int argc, char **argv);
 int command_forget(int argc, char **argv);
 int command_check(int argc, char **argv);
+int command_exclude(int argc, char **argv);
 int command_modes(int argc, char **argv);
 int command_scenes(int argc, char **argv);
 int command_render(int argc, char **argv);
+int command_strip(int argc, char **argv);
 int command_devices(int argc, char **argv);
+int command_schema(int argc, char **argv);
 
 #endif

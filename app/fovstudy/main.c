@@ -13,10 +13,13 @@ static const struct {
     {"run", "run a protocol with a participant and record it", command_run},
     {"resume", "go on with an interrupted session", command_resume},
     {"check", "check a protocol and print a participant's trials, without a GPU", command_check},
+    {"exclude", "apply exclusion rules, take out by hand, list what is out", command_exclude},
     {"modes", "list the rendering modes with their parameters", command_modes},
     {"scenes", "list the built-in scenes with their parameters", command_scenes},
     {"render", "walk a camera path and write pictures", command_render},
+    {"strip", "walk a camera path in several modes and put them side by side", command_strip},
     {"forget", "erase a person's rows from a study file", command_forget},
+    {"schema", "print the protocol language, for editors or as a reference page", command_schema},
     {"devices", "list GPUs and monitors", command_devices},
 };
 enum { COMMANDS = sizeof commands / sizeof commands[0] };

@@ -4,10 +4,10 @@
 #include "app/command/png.h"
 #include "app/command/walk.h"
 #include "app/fovstudy/commands.h"
+#include "app/fovstudy/picture.h"
 #include "renderer/renderer.h"
 
 #include <errno.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,11 +15,6 @@
 // What draws: the mode asked for and, where there is one, the mode it is held against.
 struct drawing {
     struct renderer_option *option, *against;
-};
-
-struct difference {
-    double total, values; // of rgb
-    int max;
 };
 
 struct request {
@@ -89,16 +84,10 @@ static const char *wrong_value(int option, const char *value, struct request *r)
     switch (option) {
     case OPTION_FRAMES:
         return options_uint64(value, 1, 1000000, &r->frames) ? NULL : "a whole number from 1 to 1000000";
-    case OPTION_SIZE:
-        return options_size(value, &r->walk.width, &r->walk.height) ? NULL : "WIDTHxHEIGHT, 16 to 16384 each";
-    case OPTION_GAZE:
-        return walk_gaze_read(value, &r->walk.gaze) ? NULL : "centre, script or X,Y in degrees";
-    case OPTION_FOV:
-        return options_double(value, 1, 170, &r->walk.fov_deg) ? NULL : "a number of degrees from 1 to 170";
     case OPTION_ANISOTROPY:
         return options_double(value, 1, 16, &r->anisotropy) ? NULL : "a number from 1 to 16";
     default:
-        return options_double(value, 0, 1e6, &r->walk.start_s) ? NULL : "a number of seconds from 0 to 1000000";
+        return walk_option(&r->walk, specs[option].name, value);
     }
 }
 
@@ -177,13 +166,6 @@ static int read_options(int argc, char **argv, struct request *r)
     return -1;
 }
 
-static void print_error(void *user, enum renderer_log_level level, const char *sentence)
-{
-    (void)user;
-    if (level != RENDERER_INFO)
-        fprintf(stderr, "fovstudy: %s\n", sentence);
-}
-
 static bool write_picture(const struct request *r, uint64_t number, int eye, const char *what, int channels,
                           const uint8_t *pixels)
 {
@@ -196,20 +178,8 @@ static bool write_picture(const struct request *r, uint64_t number, int eye, con
     return false;
 }
 
-// |a - b|, 8 times as strong, so that a few levels can be seen.
-static void subtract(const uint8_t *a, const uint8_t *b, size_t count, uint8_t *out, struct difference *sum)
-{
-    for (size_t i = 0; i < count; i++) {
-        int d = abs(a[i] - b[i]);
-        out[i] = (uint8_t)(8 * d < 255 ? 8 * d : 255);
-        sum->max = d > sum->max ? d : sum->max;
-        sum->total += d;
-        sum->values += i % 4 != 3;
-    }
-}
-
 static bool write_eye(const struct request *r, const struct drawing *d, uint64_t number, int eye,
-                      uint8_t *pixels[2], struct difference *difference)
+                      uint8_t *pixels[2], struct picture_difference *difference)
 {
     if (!renderer_read(d->option, eye, pixels[0]) || !write_picture(r, number, eye, "", 4, pixels[0]))
         return false;
@@ -217,7 +187,7 @@ static bool write_eye(const struct request *r, const struct drawing *d, uint64_t
         if (!renderer_read(d->against, eye, pixels[1]) ||
             !write_picture(r, number, eye, "-against", 4, pixels[1]))
             return false;
-        subtract(pixels[0], pixels[1], 4 * (size_t)r->walk.width * r->walk.height, pixels[1], difference);
+        picture_subtract(pixels[0], pixels[1], (size_t)r->walk.width * r->walk.height, pixels[1], difference);
         if (!write_picture(r, number, eye, "-difference", 4, pixels[1]))
             return false;
     }
@@ -229,7 +199,7 @@ static bool write_frame(const struct request *r, const struct drawing *d, uint64
 {
     const size_t size = 4 * (size_t)r->walk.width * r->walk.height;
     uint8_t *pixels[2] = {malloc(size), malloc(size)};
-    struct difference difference = {0};
+    struct picture_difference difference = {0};
     bool ok = pixels[0] && pixels[1];
     for (int eye = 0; eye < EYES && ok; eye++)
         ok = write_eye(r, d, number, eye, pixels, &difference);
@@ -281,7 +251,7 @@ static bool make_folder(const char *path)
 
 static bool render(const struct request *r, const struct scene *scene)
 {
-    const struct renderer_desc desc = {.log = {print_error, NULL},
+    const struct renderer_desc desc = {.log = {picture_log, NULL},
                                        .device = r->device,
                                        .width = r->walk.width,
                                        .height = r->walk.height,

@@ -9,8 +9,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#define UNATTENDED_PATIENCE_S 600.0
-
 // EXIT_DONE where there is nothing to do, EXIT_FAILED after a sentence, -1 to go on.
 static int find_session(struct run *run, struct store_session_start *start, char *error, size_t error_size)
 {
@@ -146,8 +144,7 @@ int command_resume(int argc, char **argv)
     if (status == EXIT_DONE)
         result = SESSION_COMPLETE;
     else if (status < 0 && resume_options(&run.options, &start, observer, error, sizeof error)) {
-        if (run.options.observer && !(run.options.patience_s > 0.0))
-            run.options.patience_s = UNATTENDED_PATIENCE_S;
+        run_options_patience(&run.options);
         if (prepare(&run, &start, error, sizeof error))
             result = go_on(&run, &start, error, sizeof error);
     }

@@ -30,7 +30,7 @@ enum option {
     OPTIONS
 };
 
-#define UNATTENDED_PATIENCE_S 600.0 // nobody sees that a machine waits: it gives up in time to be noticed
+#define UNATTENDED_PATIENCE_S 600.0
 
 static const struct option_spec specs[OPTIONS + 1] = {
     [DB] = {"db", "FILE", "the study file; made where there is none"},
@@ -197,7 +197,13 @@ double run_step_hz(const struct run_options *options)
     return options->refresh_hz > 0.0 ? options->refresh_hz : DISPLAY_HEADLESS_HZ;
 }
 
-int run_options_answerable(const struct run_options *options)
+void run_options_patience(struct run_options *options)
+{
+    if (options->observer && !(options->patience_s > 0.0))
+        options->patience_s = UNATTENDED_PATIENCE_S;
+}
+
+static int answerable(const struct run_options *options)
 {
     bool blind = strcmp(options->display, "headless") == 0 || strcmp(options->display, "none") == 0;
     if (blind && !options->observer)
@@ -225,9 +231,8 @@ static int check(struct run_options *out)
         out->display = "window";
     if (!(out->fov_deg > 0.0))
         out->fov_deg = VIEWING_DEFAULT_FOV_DEG;
-    if (out->observer && !(out->patience_s > 0.0))
-        out->patience_s = UNATTENDED_PATIENCE_S;
-    return run_options_answerable(out);
+    run_options_patience(out);
+    return answerable(out);
 }
 
 static void help(bool resume)

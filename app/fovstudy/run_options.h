@@ -33,8 +33,8 @@ struct run_options {
 // -1 to go on, else the exit status (help and wrong usage have been printed). For a resumed session what is not
 // given stays unset, to be taken from the study file.
 int run_options_read(struct run_options *out, bool resume, int argc, char **argv);
-// Whether somebody can answer where these options show what they show; else the exit status, as above.
-int run_options_answerable(const struct run_options *options);
+// Where nobody sees that a machine waits, it gives up in time to be noticed.
+void run_options_patience(struct run_options *options);
 
 // The rate of a clock that no display keeps.
 double run_step_hz(const struct run_options *options);

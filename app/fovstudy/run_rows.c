@@ -101,7 +101,7 @@ static char *settings_json(const struct run_options *options, const struct run_s
         fprintf(out, "%s", i ? "," : "");
         json_string(out, study->protocol->scenes[i]);
         fprintf(out, ":");
-        json_string(out, study_scene_spec(options->scenes, options->scene_count, study->protocol->scenes[i]));
+        json_string(out, study_shown_scene(study->protocol, i, options->scenes, options->scene_count));
     }
     fprintf(out, "}}");
     return fclose(out) == 0 ? text : NULL;

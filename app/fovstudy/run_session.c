@@ -1,6 +1,7 @@
 #include "app/fovstudy/run_session.h"
 
 #include "app/command/options.h"
+#include "app/fovstudy/rules.h"
 
 #include <inttypes.h>
 #include <signal.h>
@@ -8,11 +9,13 @@
 #include <string.h>
 #include <unistd.h>
 
-// On a terminal: where the session is. The options are named only with --unblind.
+// Where the session is, unless the experimenter's panel says so. The options are named only with --unblind.
 static void progress(void *user, const struct machine_view *view)
 {
     const struct run *run = user;
     bool terminal = isatty(STDERR_FILENO);
+    if (run->desk)
+        return;
     if (terminal)
         fprintf(stderr, "\r\033[K%" PRIu32 " of %" PRIu32 " answered, %s", view->done, view->total,
                 machine_screen_name(view->screen));
@@ -60,7 +63,7 @@ bool run_find_errors(struct run *run, char *error, size_t error_size)
         return true;
     const struct protocol *protocol = run->study.protocol;
     for (uint32_t i = 0; i < protocol->scene_count; i++)
-        run->specs[i] = study_scene_spec(run->options.scenes, run->options.scene_count, protocol->scenes[i]);
+        run->specs[i] = study_shown_scene(protocol, i, run->options.scenes, run->options.scene_count);
     return run_rows_reference(&run->rows, &run->study, error, error_size) &&
            errors_init(&run->errors, run->rows.plan, run->rows.store, run->rows.reference_id, run->specs,
                        run->study.observer.errors, error, error_size);
@@ -76,8 +79,11 @@ bool run_open_gaze(struct run *run, int64_t segments, char *error, size_t error_
 
 static void say(void *user, const char *sentence)
 {
-    (void)user;
-    fprintf(stderr, "%sfovstudy: %s\n", isatty(STDERR_FILENO) ? "\r\033[K" : "", sentence);
+    const struct run *run = user;
+    if (run->desk)
+        desk_say(run->desk, sentence);
+    else
+        fprintf(stderr, "%sfovstudy: %s\n", isatty(STDERR_FILENO) ? "\r\033[K" : "", sentence);
 }
 
 static void note_unblind(const struct run *run)
@@ -89,6 +95,16 @@ static void note_unblind(const struct run *run)
                                                .at_ns = 0,
                                                .kind = "unblind",
                                                .detail = "the options were named on the terminal"});
+}
+
+// A session that failed may go on; its rules are applied when it ends, or by `fovstudy exclude`.
+static void apply_rules(const struct run *run)
+{
+    char why[RUN_ERROR] = "";
+    if (!rules_end_session(run->rows.store, run->options.database, run->study.protocol, &run->rows.ids, why,
+                           sizeof why))
+        fprintf(stderr, "fovstudy: the exclusion rules are not applied yet (%s); fovstudy exclude does it\n",
+                why);
 }
 
 enum session_result run_go(struct run *run, const struct machine_start *start, char *error, size_t error_size)
@@ -116,8 +132,17 @@ enum session_result run_go(struct run *run, const struct machine_start *start, c
         .progress = progress,
         .progress_user = run,
         .say = say,
+        .say_user = run,
         .patience_s = options->patience_s,
     };
+    desc.desk = run->desk =
+        desk_open(&(struct desk_desc){.out = stderr,
+                                      .in = STDIN_FILENO,
+                                      .plan = run->rows.plan,
+                                      .participant = options->participant,
+                                      .refresh_hz = run->view.display ? run->view.display->refresh_hz : 0.0,
+                                      .has_gaze = run->view.gaze != NULL,
+                                      .unblind = options->unblind});
     signal(SIGPIPE, SIG_IGN); // a reader of the events that goes away is told in a sentence
     note_unblind(run);
     struct store_error why;
@@ -126,9 +151,13 @@ enum session_result run_go(struct run *run, const struct machine_start *start, c
         return SESSION_FAILED;
     }
     enum session_result result = session_run(&desc, error, error_size);
+    desk_close(run->desk);
+    run->desk = NULL;
     // A renderer's sentence says more than that a frame failed.
     if (result == SESSION_FAILED && run->view.renderer_error[0])
         snprintf(error, error_size, "%s", run->view.renderer_error);
+    if (result != SESSION_FAILED)
+        apply_rules(run);
     return result;
 }
 

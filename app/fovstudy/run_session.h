@@ -16,6 +16,7 @@ struct run {
     struct errors errors;
     const char *specs[PROTOCOL_SCENES]; // what is shown for each scene, for the errors; borrowed
     struct event_lines lines;
+    struct desk *desk; // while the session runs on a terminal
 };
 
 // Without frames the observer's errors must be known before a session is made.

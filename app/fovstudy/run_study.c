@@ -1,8 +1,11 @@
 #include "app/fovstudy/run_study.h"
 
+#include "app/fovstudy/ask.h"
+
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 // Appends to a JSON object under construction; false where it is full.
 static bool append(char *json, size_t size, const char *name, const char *value)
@@ -37,6 +40,25 @@ static bool add_attribute(struct run_study *study, const char *text, bool *seen,
     return false;
 }
 
+// What the command line does not say is asked where somebody can answer.
+static bool find_out(struct run_study *study, const struct protocol_attribute *attribute, char *error,
+                     size_t error_size)
+{
+    char json[1024] = "";
+    bool asked = isatty(STDIN_FILENO) && isatty(STDERR_FILENO);
+    if (asked && !ask_attribute(stdin, stderr, attribute, json, sizeof json))
+        asked = false; // the input ended
+    if (attribute->required && !*json) {
+        snprintf(error, error_size, "the protocol wants to know '%s' (%s); give --attribute %s=VALUE",
+                 attribute->name, attribute->prompt, attribute->name);
+        return false;
+    }
+    if (!*json || append(study->attributes, sizeof study->attributes - 1, attribute->name, json))
+        return true;
+    snprintf(error, error_size, "the attributes are too long");
+    return false;
+}
+
 static bool read_attributes(struct run_study *study, const struct run_options *options, char *error,
                             size_t error_size)
 {
@@ -45,15 +67,10 @@ static bool read_attributes(struct run_study *study, const struct run_options *o
     for (size_t i = 0; i < options->attribute_count; i++)
         if (!add_attribute(study, options->attributes[i], seen, error, error_size))
             return false;
-    strcat(study->attributes, "}");
-    for (uint32_t i = 0; i < study->protocol->attribute_count && !options->observer; i++) {
-        const struct protocol_attribute *attribute = &study->protocol->attributes[i];
-        if (attribute->required && !seen[i]) {
-            snprintf(error, error_size, "the protocol wants to know '%s' (%s); give --attribute %s=VALUE",
-                     attribute->name, attribute->prompt, attribute->name);
+    for (uint32_t i = 0; i < study->protocol->attribute_count && !options->observer; i++)
+        if (!seen[i] && !find_out(study, &study->protocol->attributes[i], error, error_size))
             return false;
-        }
-    }
+    strcat(study->attributes, "}");
     return true;
 }
 

@@ -46,17 +46,28 @@ static bool open_renderer(struct run_view *view, const struct run_options *optio
     return false;
 }
 
+static struct scene *opened(const struct run_view *view, const char *spec)
+{
+    for (size_t i = 0; i < view->scene_count; i++)
+        if (strcmp(view->scenes[i].spec, spec) == 0)
+            return view->scenes[i].scene;
+    return NULL;
+}
+
 // Every scene of the protocol, so that a missing or broken file is found before the participant sits down.
 static bool open_scenes(struct run_view *view, const struct run_options *options,
                         const struct protocol *protocol, char *error, size_t error_size)
 {
     for (uint32_t i = 0; i < protocol->scene_count; i++) {
         const char *name = protocol->scenes[i];
-        const char *spec = study_scene_spec(options->scenes, options->scene_count, name);
-        struct scene *scene = scene_open(spec, error, error_size);
+        const char *spec = study_shown_scene(protocol, i, options->scenes, options->scene_count);
+        struct scene *scene = opened(view, spec); // several names may show the same
+        bool shared = scene != NULL;
+        if (!shared)
+            scene = scene_open(spec, error, error_size);
         if (!scene)
             return false;
-        if (scene->notes[0])
+        if (scene->notes[0] && !shared)
             fprintf(stderr, "fovstudy: %s\n", scene->notes);
         view->scenes[view->scene_count++] = (struct stage_scene){.name = name, .spec = spec, .scene = scene};
     }
@@ -105,6 +116,11 @@ void run_view_finish(struct run_view *view)
     gaze_close(view->gaze);
     renderer_destroy(view->renderer);
     display_close(view->display);
-    for (size_t i = 0; i < view->scene_count; i++)
-        scene_destroy(view->scenes[i].scene);
+    for (size_t i = 0; i < view->scene_count; i++) {
+        bool again = false; // an earlier name shows the same
+        for (size_t k = 0; k < i; k++)
+            again = again || view->scenes[k].scene == view->scenes[i].scene;
+        if (!again)
+            scene_destroy(view->scenes[i].scene);
+    }
 }

@@ -38,6 +38,15 @@ void fovea_at(const struct fovea *fovea, int64_t now_ns, struct fovea_use *out)
     out->lost = out->age_ns > FOVEA_HOLD_NS;
 }
 
+void fovea_on(struct dvec3 point, double ipd_m, struct fovea_use *out)
+{
+    const struct pose head = {.orientation = {0, 0, 0, 1}};
+    *out = (struct fovea_use){.known = false};
+    for (int eye = 0; eye < EYES; eye++)
+        viewing_angles(dvec3_sub(point, viewing_eye_pose(&head, eye, ipd_m).position), &out->x_deg[eye],
+                       &out->y_deg[eye]);
+}
+
 bool fovea_returned(bool *was_lost, const struct fovea_use *use)
 {
     const bool returned = *was_lost && !use->lost;

@@ -34,6 +34,9 @@ struct fovea_use {
 
 void fovea_sample(struct fovea *fovea, const struct gaze_sample *sample, int64_t sample_id);
 void fovea_at(const struct fovea *fovea, int64_t now_ns, struct fovea_use *out);
+// What the fovea is where it follows something shown, not the eyes: each eye's direction of a point in the
+// head's frame (metres), so that both converge on it.
+void fovea_on(struct dvec3 point, double ipd_m, struct fovea_use *out);
 // Whether this frame is the first with a gaze after frames without: then the held fovea was where nobody
 // looked, and what was kept around it may be coarse where the eye is now. `was_lost`: false at first, kept by
 // the caller.

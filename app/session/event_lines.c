@@ -98,7 +98,7 @@ bool event_line(struct event_lines *lines, const char *event, int64_t at_ns, con
     if (written != length) {
         int reason = written < 0 ? errno : ENOSPC;
         off_t end = written > 0 ? lseek(lines->file, 0, SEEK_END) : -1; // no file: nothing can be taken back
-        if (end >= written)
+        if (written > 0 && end >= written)
             (void)!ftruncate(lines->file, end - written);
         errno = reason;
         return false;

@@ -262,7 +262,40 @@ static bool prepare(struct loop *loop)
                 view.screen == MACHINE_REST || view.screen == MACHINE_BREAK || view.screen == MACHINE_STIMULUS;
     if (!loop->desc->stage || !view.trial || !soon)
         return true;
-    return stage_prepare(loop->desc->stage, loop->machine, view.trial, loop->error, loop->error_size);
+    return stage_prepare(loop->desc->stage, &view, loop->error, loop->error_size);
+}
+
+// The experimenter's keys and notes; a note belongs to the trial that runs.
+static void take_desk(struct loop *loop, int64_t now)
+{
+    struct machine_view view;
+    struct machine_event event;
+    char note[DESK_NOTE], detail[STORE_DETAIL_SIZE];
+    enum desk_command command = DESK_NOTHING;
+    if (!loop->desc->desk)
+        return;
+    do {
+        machine_look(loop->machine, &view);
+        command = desk_take(loop->desc->desk, &view, &event, note);
+        if (command == DESK_EVENT && !loop->trouble.on)
+            machine_event(loop->machine, now, &event);
+        if (command == DESK_NOTED) {
+            snprintf(detail, sizeof detail, "%s", note);
+            push_event(loop, now, "note", detail);
+        }
+    } while (command != DESK_NOTHING);
+}
+
+static void show_desk(struct loop *loop, const struct machine_view *view, int64_t now)
+{
+    struct fovea_use gaze = {.known = false};
+    if (!loop->desc->desk)
+        return;
+    if (loop->desc->gaze)
+        fovea_at(&loop->fovea, now, &gaze);
+    if (loop->desc->display && !isnan(loop->show.frame_ms))
+        desk_frame(loop->desc->desk, loop->show.frame_ms, loop->show.late);
+    desk_show(loop->desc->desk, now, view, &gaze, loop->trouble.on ? loop->trouble.sentence : NULL);
 }
 
 static bool present(struct loop *loop, const struct machine_view *view, int64_t now)
@@ -306,6 +339,7 @@ static bool advance(struct loop *loop, struct machine_view *out_view)
         take_observer(loop, now_ns(loop));
     if (desc->display)
         take_keys(loop);
+    take_desk(loop, now_ns(loop));
     if (!prepare(loop))
         return false;
     int64_t now = now_ns(loop);
@@ -321,7 +355,9 @@ static bool advance(struct loop *loop, struct machine_view *out_view)
         machine_look(loop->machine, out_view);
     }
     tell(loop, out_view);
-    return present(loop, out_view, now);
+    bool good = present(loop, out_view, now);
+    show_desk(loop, out_view, now);
+    return good;
 }
 
 // One frame. False: the session is over, by failure or at its end (*out_view tells).
@@ -413,6 +449,7 @@ enum session_result session_run(const struct session_desc *desc, char *error, si
     uint32_t places = desc->plan->trial_count + (desc->start ? desc->start->repeat_count : 0);
     bool good = recorder_init(&loop.recorder, places) && (!desc->display || show_init(&loop.show, desc)) &&
                 run(&loop, &view);
+    show_tell_submitted(&loop.show);
     show_finish(&loop.show);
     recorder_finish(&loop.recorder);
     machine_destroy(loop.machine);

@@ -139,10 +139,7 @@ static void stimulus(const struct machine_view *view, const struct screen_state 
     if (!view->trial)
         return;
     bool toggling = protocol_kind_is_pair(view->trial->kind) && view->trial->kind != PROTOCOL_SEQUENTIAL;
-    if (view->marker) {
-        PUT(out->title, "+");
-        out->size = LETTER_SIZE;
-    } else if (toggling && view->fade >= 1.0 && state->going_to != PLAN_SLOT_NONE) {
+    if (toggling && view->fade >= 1.0 && state->going_to != PLAN_SLOT_NONE) {
         PUT(out->title, state->going_to == PLAN_SLOT_A ? "A" : "B");
         out->size = LETTER_SIZE;
     } else if (toggling && state->look_at_both) {

@@ -11,6 +11,7 @@
 
 #include "app/display/display.h"
 #include "app/gaze/gaze_source.h"
+#include "app/session/desk.h"
 #include "app/session/errors.h"
 #include "app/session/event_lines.h"
 #include "app/session/stage.h"
@@ -48,6 +49,7 @@ struct session_desc {
     // One sentence for the experimenter while the session runs, e.g. on a full disk; NULL: not.
     void (*say)(void *user, const char *sentence);
     void *say_user;
+    struct desk *desk; // the experimenter's; NULL: none
     double patience_s; // how long trouble with the disk may last before the session fails; 0: for ever
 };
 

@@ -57,9 +57,14 @@ static bool measured_key(struct show *show, const struct machine_view *view, con
     const struct plan_trial *trial = view->trial;
     *out = (struct measure_key){.condition_id = recorder_condition(recorder, trial, slot),
                                 .scene = scene_index(show, trial)};
-    if (trial->kind == PROTOCOL_ADJUST && slot == trial->test_slot &&
-        machine_option(recorder->machine, slot, &option))
+    // What is drawn: values that contradict each other are not.
+    const struct mode_choice *now = stage_now(show->desc->stage, slot);
+    if (trial->kind == PROTOCOL_ADJUST && slot == trial->test_slot && now &&
+        machine_option(recorder->machine, slot, &option)) {
+        for (uint32_t i = 0; i < now->mode->parameter_count; i++)
+            option.values[i] = plan_level(now->values[i]);
         out->condition_id = adjusted_condition(show, &option);
+    }
     measure_metric(show->desc->plan->protocol, trial->resolved, out->metric);
     return out->condition_id && out->condition_id != show->desc->reference_id;
 }
@@ -106,9 +111,15 @@ bool show_measure_rest(struct show *show, char *error, size_t error_size)
 }
 
 // Which directions the fovea takes, and where they came from.
-static enum store_fovea follow(const struct show *show, const struct fovea *fovea, int64_t start_ns,
-                               struct fovea_use *out)
+static enum store_fovea follow(const struct show *show, const struct machine_view *view,
+                               const struct fovea *fovea, int64_t start_ns, struct fovea_use *out)
 {
+    struct fixation_place at;
+    if (view->trial->resolved->foveate == PROTOCOL_FOVEATE_TARGET &&
+        targets_fixation(stage_targets(show->desc->stage), view, &at)) {
+        fovea_on(at.point, show->desc->ipd_m, out);
+        return STORE_FOVEA_TARGET;
+    }
     if (!show->desc->gaze) {
         *out = (struct fovea_use){.known = false};
         return STORE_FOVEA_FIXED;
@@ -149,6 +160,47 @@ static void tell_redraw(const struct show *show, const struct machine_view *view
                                                               .detail = detail});
 }
 
+// A level and an adjusted value are conditions of their own.
+static bool measure_option(struct show *show, const struct machine_view *view, const struct recorder *recorder,
+                           struct renderer_option *option, const struct frame *frame)
+{
+    struct measure_key key;
+    return !show->measure || !measured_key(show, view, recorder, view->slot, &key) ||
+           !measure_due(show->measure, view, key.condition_id) ||
+           measure_take(show->measure, &key, option, stage_reference(show->desc->stage), frame);
+}
+
+// Where the spheres to count stand: an event row each, JSON as targets.h says.
+static void tell_spheres(const struct show *show, const struct machine_view *view,
+                         const struct recorder *recorder, int64_t at_ns)
+{
+    char detail[STORE_DETAIL_SIZE];
+    const struct targets *targets = stage_targets(show->desc->stage);
+    for (uint32_t i = 0; targets_sphere_json(targets, view->showing, i, detail, sizeof detail); i++)
+        store_push_event(show->desc->store, &(struct store_event){.session_id = show->desc->ids->session_id,
+                                                                  .segment_id = show->desc->ids->segment_id,
+                                                                  .trial_id = recorder->trial_id,
+                                                                  .at_ns = at_ns,
+                                                                  .kind = "sphere",
+                                                                  .detail = detail});
+}
+
+// Targets over the pictures; the row tells where the eyes were asked to be.
+static bool lay_marks(const struct show *show, const struct machine_view *view, struct store_frame *row)
+{
+    struct renderer_mark marks[RENDERER_MARKS];
+    struct fixation_place at;
+    const struct session_desc *desc = show->desc;
+    const struct targets *targets = stage_targets(desc->stage);
+    const struct targets_view eyes = {desc->fov, desc->display->width, desc->display->height, desc->ipd_m};
+    if (targets_fixation(targets, view, &at)) {
+        row->target_x_deg = at.x_deg;
+        row->target_y_deg = at.y_deg;
+    }
+    uint32_t count = targets_marks(targets, view, &row->head_pose, &eyes, marks, RENDERER_MARKS);
+    return renderer_set_marks(desc->renderer, marks, count);
+}
+
 // Renders the option of the view; fills what the row tells about it.
 static bool draw_option(struct show *show, const struct machine_view *view, const struct fovea *fovea,
                         const struct recorder *recorder, struct store_frame *row, char *error,
@@ -156,25 +208,25 @@ static bool draw_option(struct show *show, const struct machine_view *view, cons
 {
     struct fovea_use use;
     struct frame_stats stats;
-    enum store_fovea source = follow(show, fovea, row->start_ns, &use);
+    enum store_fovea source = follow(show, view, fovea, row->start_ns, &use);
     struct frame frame = stage_frame(show->desc->stage, view, show->number, &use, &row->head_pose);
     struct renderer_option *option = stage_option(show->desc->stage, view->slot);
     memset(&stats, 0, sizeof stats);
-    frame.gaze_returned = source != STORE_FOVEA_FIXED && fovea_returned(&show->gaze_lost, &use);
+    bool gaze = source == STORE_FOVEA_GAZE || source == STORE_FOVEA_LOST;
+    frame.gaze_returned = gaze && fovea_returned(&show->gaze_lost, &use);
     if (!option || !renderer_draw(option, &frame, &stats)) {
         snprintf(error, error_size, "the GPU could not draw frame %llu", (unsigned long long)show->number);
         return false;
     }
     int64_t condition_id = recorder_condition(recorder, view->trial, view->slot);
-    struct measure_key key;
-    if (show->measure && measured_key(show, view, recorder, view->slot, &key) &&
-        measure_due(show->measure, view, key.condition_id) &&
-        !measure_take(show->measure, &key, option, stage_reference(show->desc->stage), &frame)) {
+    if (!measure_option(show, view, recorder, option, &frame)) {
         snprintf(error, error_size, "the image error of frame %llu could not be measured",
                  (unsigned long long)show->number);
         return false;
     }
     tell_redraw(show, view, recorder, row->start_ns, stats.redraw);
+    // A staircase trial has a condition for its level; what somebody adjusts has none.
+    row->effective = view->adjusted ? stage_effective(show->desc->stage, view->slot) : NULL;
     fill_fovea(&use, source, row);
     row->condition_id = condition_id;
     row->cpu_us = stats.cpu_ms * 1e3;
@@ -222,6 +274,8 @@ static void time_row(struct show *show, struct store_frame *row)
     struct display *display = show->desc->display;
     double refresh_ns = display->refresh_hz > 0.0 ? 1e9 / display->refresh_hz : NAN;
     row->present_estimated = true;
+    show->frame_ms = NAN;
+    show->late = false;
     if (display->simulated_clock) {
         row->present_ns = row->start_ns + (int64_t)llround(refresh_ns);
         return;
@@ -231,6 +285,9 @@ static void time_row(struct show *show, struct store_frame *row)
     if (!isnan(refresh_ns))
         row->late =
             show->last_present_ns >= 0 && (double)(row->present_ns - show->last_present_ns) > 1.5 * refresh_ns;
+    if (show->last_present_ns >= 0)
+        show->frame_ms = (double)(row->present_ns - show->last_present_ns) * 1e-6;
+    show->late = row->late == 1;
     show->last_present_ns = row->present_ns;
 }
 
@@ -243,6 +300,7 @@ bool show_frame(struct show *show, const struct machine_view *view, const struct
     struct renderer_option *option = NULL;
     bool visible = view->screen == MACHINE_STIMULUS && view->slot != PLAN_SLOT_NONE && view->fade < 1.0;
     if (visible) {
+        stage_adjust(show->desc->stage, view);
         if (!draw_option(show, view, fovea, recorder, &row, error, error_size))
             return false;
         option = stage_option(show->desc->stage, view->slot);
@@ -250,7 +308,9 @@ bool show_frame(struct show *show, const struct machine_view *view, const struct
     screen_of(view, state, &screen);
     if (display_resized(show->desc->display))
         renderer_resized(show->desc->renderer);
-    if (!overlay_set(&show->overlay, &screen) ||
+    if (view->screen == MACHINE_STIMULUS && view->trial_started)
+        tell_spheres(show, view, recorder, start_ns);
+    if (!lay_marks(show, view, &row) || !overlay_set(&show->overlay, &screen) ||
         !renderer_show(show->desc->renderer, option, visible ? view->fade : 1.0)) {
         snprintf(error, error_size, "frame %llu could not be shown", (unsigned long long)show->number);
         return false;
@@ -260,4 +320,18 @@ bool show_frame(struct show *show, const struct machine_view *view, const struct
     store_push_frame(show->desc->store, &row); // what does not fit is counted and reported by the store
     show->number++;
     return true;
+}
+
+void show_tell_submitted(const struct show *show)
+{
+    char detail[64];
+    if (!show->desc || !show->desc->display)
+        return;
+    snprintf(detail, sizeof detail, "{\"frames\":%llu}", (unsigned long long)show->number);
+    store_push_event(show->desc->store,
+                     &(struct store_event){.session_id = show->desc->ids->session_id,
+                                           .segment_id = show->desc->ids->segment_id,
+                                           .at_ns = display_now_ns(show->desc->display) - show->desc->origin_ns,
+                                           .kind = "frames_submitted",
+                                           .detail = detail});
 }

@@ -14,6 +14,8 @@ struct show {
     uint64_t number;                 // of the next frame
     int64_t last_present_ns;         // -1: none
     bool gaze_lost;                  // at the last frame that was drawn
+    double frame_ms;                 // from the frame before to this one, as shown; NaN for the first
+    bool late;                       // this one
     struct protocol_option adjusted; // the latest that errors were asked of
     int64_t adjusted_id;             // its condition, 0: none
 };
@@ -21,6 +23,9 @@ struct show {
 // False: out of memory.
 bool show_init(struct show *show, const struct session_desc *desc);
 void show_finish(struct show *show);
+// At the end of a segment, an event of how many frames were submitted: the rows of `frame` are held against it,
+// and a segment without it did not end by itself.
+void show_tell_submitted(const struct show *show);
 
 // False with a sentence. `recorder` says which trial runs.
 bool show_frame(struct show *show, const struct machine_view *view, const struct screen_state *state,

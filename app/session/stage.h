@@ -1,19 +1,25 @@
-// What a trial shows: its scene on the GPU and its two options, made ready before the trial starts.
+// What a trial shows: its scene on the GPU, its two options and its targets, made ready before the trial
+// starts.
 //
-// Use: stage_create -> stage_prepare while the trial before it rests, and as long as it runs, since adjusted
-// values change -> stage_option, stage_frame per frame -> stage_destroy before the renderer. Each scene is
-// uploaded once and stays while there is room. Does not: decide what is shown, present frames, keep time.
+// Use: stage_create -> stage_prepare while the trial before it rests -> stage_adjust, stage_option, stage_frame
+//      per frame
+//      -> stage_destroy before the renderer. Each scene is uploaded once and stays while there is room.
+// Does not: decide what is shown, present frames, keep time.
 #ifndef APP_SESSION_STAGE_H
 #define APP_SESSION_STAGE_H
 
 #include "app/gaze/fovea.h"
+#include "app/session/targets.h"
 #include "renderer/renderer.h"
 #include "studies/engine/machine.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 
-enum { STAGE_RESIDENT = 3 }; // scenes on the GPU at once
+enum {
+    STAGE_RESIDENT = 3,   // scenes on the GPU at once
+    STAGE_EFFECTIVE = 256 // bytes of stage_effective's JSON
+};
 
 struct stage_scene {
     const char *name;    // as the protocol names it; borrowed
@@ -21,6 +27,7 @@ struct stage_scene {
     struct scene *scene; // borrowed
     struct renderer_scene *resident; // NULL: not on the GPU
     uint64_t used;                   // when, for choosing what leaves
+    struct ray_scene *rays;          // the stage's; NULL: not needed yet
 };
 
 struct stage_desc {
@@ -40,9 +47,17 @@ struct stage;
 struct stage *stage_create(const struct stage_desc *desc); // NULL: out of memory
 void stage_destroy(struct stage *stage);                   // NULL is fine
 
-// The options of the running or next trial; nothing where they are ready already. False with a sentence.
-bool stage_prepare(struct stage *stage, const struct machine *machine, const struct plan_trial *trial,
-                   char *error, size_t error_size);
+// The options and targets of the view's trial, that is to come or runs; nothing where they are ready already.
+// False with a sentence.
+bool stage_prepare(struct stage *stage, const struct machine_view *view, char *error, size_t error_size);
+// Gives the option under test the values it has in this frame. Values that contradict each other leave it as it
+// was; stage_effective tells.
+void stage_adjust(struct stage *stage, const struct machine_view *view);
+// What an option is drawn with now; NULL: no such option.
+const struct mode_choice *stage_now(const struct stage *stage, enum plan_slot slot);
+// Where that differs from its condition, JSON ({"epsilon":0.13}), valid until the next change; else NULL.
+const char *stage_effective(const struct stage *stage, enum plan_slot slot);
+const struct targets *stage_targets(const struct stage *stage); // of the prepared trial
 // One option on one scene, in slot a, with the reference: for measuring outside trials.
 bool stage_prepare_option(struct stage *stage, const struct protocol_option *option,
                           const struct protocol_settings *settings, size_t scene, char *error,

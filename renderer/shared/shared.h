@@ -28,6 +28,8 @@
 
 #define SHARED_TILE 8        // work groups are 8x8 pixels
 #define SHARED_CULL_GROUP 64 // items per culling work group
+#define SHARED_MARK_CROSS 0
+#define SHARED_MARK_BALL 1
 #define SHARED_TILES_FIRST 4 // word of a tile list (tiles.glsl) where the tiles begin
 
 struct shared_eye {
@@ -127,7 +129,24 @@ struct shared_counters {
     SHARED_UINT moving_px; // counted by passes/motion alone
 };
 
+// Something laid over the pictures, e.g. a fixation target.
+struct shared_mark_eye {
+    SHARED_VEC2(centre); // pixels
+    SHARED_VEC2(
+        unit_from_x); // takes pixels from there to the unit disc, right and up positive: of a pixel right
+    SHARED_VEC2(unit_from_y); // and of one down
+    SHARED_FLOAT opacity;     // 0: not in this eye
+};
+
+struct shared_mark {
+    SHARED_STRUCT(shared_mark_eye) eyes[2];
+    SHARED_VEC3(colour); // sRGB-encoded
+    SHARED_UINT kind;    // SHARED_MARK_*
+    SHARED_FLOAT fade;   // how far its colours are mixed with mid gray
+};
+
 #ifndef GL_core_profile
+_Static_assert(sizeof(struct shared_mark) == 2 * 28 + 20, "scalar layout has no padding");
 _Static_assert(sizeof(struct shared_eye) == 16 * 4 * 3 + 16 * 7, "scalar layout has no padding");
 _Static_assert(sizeof(struct shared_item) == 44, "scalar layout has no padding");
 _Static_assert(sizeof(struct shared_draw) == 20, "VkDrawIndexedIndirectCommand");

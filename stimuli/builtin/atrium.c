@@ -56,7 +56,7 @@ static void add_light(struct scene *scene)
     scene->luminance = 1.3f;
 }
 
-static bool add_path(struct scene *scene)
+bool atrium_path(struct camera_path *out)
 {
     // Through the court past the basin, into the arcade, along it under the vaults, and out again.
     static const struct camera_path_knot knots[] = {
@@ -68,10 +68,10 @@ static bool add_path(struct scene *scene)
         {{-1.6, 1.81, -6.1}, {-8.5, 2.3, -4.0}}, {{-4.5, 1.76, -4.4}, {-8.0, 2.9, 1.5}},
         {{-6.8, 1.67, -2.2}, {-5.0, 3.2, 5.5}},  {{-9.0, 1.65, -1.2}, {-1.5, 3.4, 5.0}},
     };
-    scene->path = (struct camera_path){.knot_count = sizeof knots / sizeof knots[0], .speed_m_s = 1.2};
-    for (uint32_t i = 0; i < scene->path.knot_count; i++)
-        scene->path.knots[i] = knots[i];
-    return camera_path_finish(&scene->path);
+    *out = (struct camera_path){.knot_count = sizeof knots / sizeof knots[0], .speed_m_s = 1.2};
+    for (uint32_t i = 0; i < out->knot_count; i++)
+        out->knots[i] = knots[i];
+    return camera_path_finish(out);
 }
 
 static void build(const struct atrium *atrium)
@@ -109,7 +109,7 @@ struct scene *atrium_make(const double *values)
     if (maker_create(maker, "atrium")) {
         struct atrium atrium = {.maker = maker};
         add_light(maker->scene);
-        if (!add_path(maker->scene) || !atrium_make_materials(&atrium))
+        if (!atrium_path(&maker->scene->path) || !atrium_make_materials(&atrium))
             maker->failed = true;
         if (!maker->failed)
             build(&atrium);

@@ -4,6 +4,7 @@
 
 #include "stimuli/scene.h"
 
+bool atrium_path(struct camera_path *out);
 struct scene *atrium_make(const double *values); // takes no parameters; NULL: out of memory
 
 #endif

@@ -22,8 +22,10 @@ static const struct builtin_parameter town_parameters[] = {
 };
 
 const struct builtin_scene builtin_scenes[] = {
-    {"atrium", "a sunlit two-storey court with columns, arches, vaults and cloth", no_parameters, atrium_make},
-    {"town", "a block-built town with trees, lanterns and moving objects", town_parameters, town_make},
+    {"atrium", "a sunlit two-storey court with columns, arches, vaults and cloth", no_parameters, atrium_make,
+     atrium_path},
+    {"town", "a block-built town with trees, lanterns and moving objects", town_parameters, town_make,
+     town_path},
     {.name = NULL},
 };
 
@@ -96,14 +98,15 @@ static bool read_item(const struct builtin_scene *scene, const char *item, int l
     return true;
 }
 
-struct scene *builtin_scene_open(const char *spec, char *error, size_t error_size)
+// The scene that a specification names, with its parameters; NULL after a sentence.
+static const struct builtin_scene *read_spec(const char *spec, double values[PARAMETERS], char *error,
+                                             size_t error_size)
 {
     const struct builtin_scene *scene = find(spec);
     if (scene == NULL) {
         name_scenes(spec, error, error_size);
         return NULL;
     }
-    double values[PARAMETERS] = {0};
     for (int i = 0; scene->parameters[i].name != NULL; i++)
         values[i] = scene->parameters[i].value;
     const char *item = spec + strlen(scene->name);
@@ -114,6 +117,22 @@ struct scene *builtin_scene_open(const char *spec, char *error, size_t error_siz
             return NULL;
         item += length;
     }
+    return scene;
+}
+
+bool builtin_scene_check(const char *spec, struct camera_path *out_path, char *error, size_t error_size)
+{
+    double values[PARAMETERS] = {0};
+    const struct builtin_scene *scene = read_spec(spec, values, error, error_size);
+    return scene != NULL && scene->path(out_path);
+}
+
+struct scene *builtin_scene_open(const char *spec, char *error, size_t error_size)
+{
+    double values[PARAMETERS] = {0};
+    const struct builtin_scene *scene = read_spec(spec, values, error, error_size);
+    if (scene == NULL)
+        return NULL;
     struct scene *made = scene->make(values);
     if (made == NULL)
         snprintf(error, error_size, "scene '%s' does not fit into memory; ask for fewer triangles", spec);

@@ -26,12 +26,17 @@ struct builtin_scene {
     const struct builtin_parameter *parameters;
     // `values` in the order of `parameters`. NULL: out of memory. Caller frees with scene_destroy.
     struct scene *(*make)(const double *values);
+    bool (*path)(struct camera_path *out); // the made scene's, without making it
 };
 
 extern const struct builtin_scene builtin_scenes[];
 
 // True for a name of the table; a specification's ":parameters" may follow.
 bool builtin_scene_known(const char *name);
+
+// Whether builtin_scene_open would take the specification, and the path of what it would make; nothing is made.
+// False with a sentence as below.
+bool builtin_scene_check(const char *spec, struct camera_path *out_path, char *error, size_t error_size);
 
 // NAME or NAME:parameter=value,... On failure NULL and one sentence in `error` that names the valid names or
 // range.

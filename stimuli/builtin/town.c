@@ -26,7 +26,7 @@ static void add_light(struct scene *scene)
     scene->luminance = 1.35f;
 }
 
-static bool add_path(struct scene *scene)
+bool town_path(struct camera_path *out)
 {
     // Around the well, down the east street, over the river, along the far bank and back over the other bridge.
     static const struct camera_path_knot knots[] = {
@@ -41,10 +41,10 @@ static bool add_path(struct scene *scene)
         {{-15.0, 2.00, 25.6}, {-14, 2.6, 8}}, {{-15.0, 2.05, 20.0}, {-8, 2.8, 2}},
         {{-14.6, 1.70, 14.0}, {-4, 2.8, -2}}, {{-10.6, 1.65, 6.4}, {0, 2.4, -4}},
     };
-    scene->path = (struct camera_path){.knot_count = sizeof knots / sizeof knots[0], .speed_m_s = 1.4};
-    for (uint32_t i = 0; i < scene->path.knot_count; i++)
-        scene->path.knots[i] = knots[i];
-    return camera_path_finish(&scene->path);
+    *out = (struct camera_path){.knot_count = sizeof knots / sizeof knots[0], .speed_m_s = 1.4};
+    for (uint32_t i = 0; i < out->knot_count; i++)
+        out->knots[i] = knots[i];
+    return camera_path_finish(out);
 }
 
 static struct voxel_style model_style(const struct town *town)
@@ -183,7 +183,8 @@ struct scene *town_make(const double *values)
         town->seed = (uint64_t)values[1];
         town->blocks = calloc(TOWN_BLOCKS, sizeof *town->blocks);
         add_light(maker->scene);
-        if (town->blocks != NULL && add_path(maker->scene) && town_make_kinds(town) && town_make_models(town))
+        if (town->blocks != NULL && town_path(&maker->scene->path) && town_make_kinds(town) &&
+            town_make_models(town))
             build(town);
         else
             maker->failed = true;

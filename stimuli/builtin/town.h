@@ -7,6 +7,7 @@
 #define TOWN_TRIANGLES_MIN 20000.0
 #define TOWN_TRIANGLES_MAX 8000000.0
 
+bool town_path(struct camera_path *out);       // the same whatever the parameters
 struct scene *town_make(const double *values); // triangles, seed; NULL: out of memory
 
 #endif

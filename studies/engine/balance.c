@@ -3,13 +3,18 @@
 #include <string.h>
 
 enum {
-    BALANCE_SHUFFLES =
-        4096, // for blocks of at most BALANCE_SHORT trials; longer ones hardly come out right by chance
+    // Blocks of at most BALANCE_SHORT trials; longer ones hardly come out right by chance.
+    BALANCE_SHUFFLES = 4096,
     BALANCE_SHORT = 16,
     BALANCE_STARTS = 5,  // the last one diagonal
     BALANCE_STEPS = 200, // per trial and start
     BALANCE_CLASSES = PROTOCOL_SCENES,
     BALANCE_GROUPS = BALANCE_MEMBERSHIPS * PROTOCOL_TRIALS
+};
+
+// What counts as within one: floor and ceiling of a group's size by its number of classes.
+struct bounds {
+    uint16_t least, most;
 };
 
 // An assignment with its counts, so that a step costs only what it touches.
@@ -18,8 +23,11 @@ struct balance {
     uint32_t classes; // 0: pairs
     uint32_t *values;
     uint32_t cost;
-    uint16_t size[BALANCE_GROUPS];
+    struct bounds bounds[BALANCE_GROUPS], quarter;
+    // Of each class; of pairs, of those on side b [0] and of those that show the reference first [1]: what
+    // these have more than their share, the others have less.
     uint16_t count[BALANCE_GROUPS][BALANCE_CLASSES];
+    uint16_t quarters[4]; // of pairs, in the whole block
 };
 
 void balance_group(struct balance_design *design, const uint32_t *key, uint32_t count, uint32_t weight)
@@ -28,61 +36,111 @@ void balance_group(struct balance_design *design, const uint32_t *key, uint32_t 
         design->member[i][design->memberships] = (uint16_t)(design->groups + key[i]);
     design->weight[design->memberships++] = weight;
     design->groups += count;
+    design->end[design->memberships - 1] = design->groups;
 }
 
-// By how many trials a class misses: within one means floor or ceiling of size / classes.
-static uint32_t miss(uint32_t count, uint32_t size, uint32_t classes)
+static struct bounds bounds_of(uint32_t size, uint32_t classes)
 {
-    uint32_t least = size / classes, most = (size + classes - 1) / classes;
-    return count < least ? least - count : count > most ? count - most : 0;
+    return (struct bounds){(uint16_t)(size / classes), (uint16_t)((size + classes - 1) / classes)};
 }
 
-static uint32_t group_cost(const struct balance *balance, uint32_t grouping, uint32_t group)
+// By how many trials a class misses.
+static uint32_t miss(uint32_t count, struct bounds bounds)
 {
-    const uint16_t *count = balance->count[group];
-    uint32_t size = balance->size[group], weight = balance->design->weight[grouping], cost = 0;
-    if (balance->classes > 0) {
-        for (uint32_t i = 0; i < balance->classes; i++)
-            cost += miss(count[i], size, balance->classes);
-        return cost * weight;
+    return count < bounds.least ? bounds.least - count : count > bounds.most ? count - bounds.most : 0;
+}
+
+static void measure(struct balance *balance)
+{
+    const struct balance_design *design = balance->design;
+    uint32_t size[BALANCE_GROUPS] = {0};
+    for (uint32_t i = 0; i < design->trials; i++)
+        for (uint32_t m = 0; m < design->memberships; m++)
+            size[design->member[i][m]]++;
+    for (uint32_t group = 0; group < design->groups; group++)
+        balance->bounds[group] = bounds_of(size[group], balance->classes > 0 ? balance->classes : 2);
+    balance->quarter = bounds_of(design->trials, 4);
+}
+
+// Counts one grouping anew and returns what it misses.
+static uint32_t count_grouping(struct balance *balance, uint32_t m)
+{
+    const struct balance_design *design = balance->design;
+    uint32_t begin = m > 0 ? design->end[m - 1] : 0, counts = balance->classes > 0 ? balance->classes : 2,
+             cost = 0;
+    memset(balance->count[begin], 0, (design->end[m] - begin) * sizeof balance->count[0]);
+    for (uint32_t i = 0; i < design->trials; i++) {
+        uint16_t *count = balance->count[design->member[i][m]];
+        if (balance->classes > 0) {
+            count[balance->values[i]]++;
+        } else {
+            count[0] = (uint16_t)(count[0] + (balance->values[i] & 1));
+            count[1] = (uint16_t)(count[1] + (balance->values[i] >> 1));
+        }
     }
-    cost =
-        (miss((uint32_t)count[1] + count[3], size, 2) + miss((uint32_t)count[2] + count[3], size, 2)) * weight;
-    for (uint32_t i = 0; i < 4 && grouping == 0; i++)
-        cost += miss(count[i], size, 4) * BALANCE_SHOULD;
-    return cost;
+    for (uint32_t group = begin; group < design->end[m]; group++)
+        for (uint32_t i = 0; i < counts; i++)
+            cost += miss(balance->count[group][i], balance->bounds[group]);
+    return cost * design->weight[m];
+}
+
+static uint32_t count_quarters(struct balance *balance)
+{
+    uint32_t cost = 0;
+    if (balance->classes > 0)
+        return 0;
+    memset(balance->quarters, 0, sizeof balance->quarters);
+    for (uint32_t i = 0; i < balance->design->trials; i++)
+        balance->quarters[balance->values[i]]++;
+    for (uint32_t i = 0; i < 4; i++)
+        cost += miss(balance->quarters[i], balance->quarter);
+    return cost * BALANCE_SHOULD;
 }
 
 static void count_all(struct balance *balance)
 {
-    const struct balance_design *design = balance->design;
-    memset(balance->size, 0, design->groups * sizeof balance->size[0]);
-    memset(balance->count, 0, design->groups * sizeof balance->count[0]);
-    for (uint32_t i = 0; i < design->trials; i++) {
-        for (uint32_t m = 0; m < design->memberships; m++) {
-            balance->size[design->member[i][m]]++;
-            balance->count[design->member[i][m]][balance->values[i]]++;
-        }
-    }
-    balance->cost = 0;
-    uint32_t group = 0;
-    for (uint32_t m = 0; m < design->memberships; m++) {
-        uint32_t end = group;
-        for (uint32_t i = 0; i < design->trials; i++)
-            end = design->member[i][m] >= end ? design->member[i][m] + 1u : end;
-        for (; group < end; group++)
-            balance->cost += group_cost(balance, m, group);
-    }
+    balance->cost = count_quarters(balance);
+    for (uint32_t m = 0; m < balance->design->memberships; m++)
+        balance->cost += count_grouping(balance, m);
+}
+
+// Whether the cost is 0; most assignments fail at an early grouping.
+static bool holds(struct balance *balance)
+{
+    for (uint32_t m = 0; m < balance->design->memberships; m++)
+        if (count_grouping(balance, m) > 0)
+            return false;
+    return count_quarters(balance) == 0;
+}
+
+static void shift(uint16_t *count, int by, struct bounds bounds, uint32_t weight, uint32_t *cost)
+{
+    *cost -= miss(*count, bounds) * weight;
+    *count = (uint16_t)(*count + by);
+    *cost += miss(*count, bounds) * weight;
 }
 
 static void set_value(struct balance *balance, uint32_t trial, uint32_t value)
 {
-    for (uint32_t m = 0; m < balance->design->memberships; m++) {
-        uint32_t group = balance->design->member[trial][m];
-        balance->cost -= group_cost(balance, m, group);
-        balance->count[group][balance->values[trial]]--;
-        balance->count[group][value]++;
-        balance->cost += group_cost(balance, m, group);
+    const struct balance_design *design = balance->design;
+    uint32_t was = balance->values[trial], *cost = &balance->cost;
+    int side = (int)(value & 1) - (int)(was & 1), first = (int)(value >> 1) - (int)(was >> 1);
+    if (was == value)
+        return;
+    for (uint32_t m = 0; m < design->memberships; m++) {
+        uint32_t group = design->member[trial][m], weight = design->weight[m];
+        uint16_t *count = balance->count[group];
+        if (balance->classes > 0) {
+            shift(&count[was], -1, balance->bounds[group], weight, cost);
+            shift(&count[value], 1, balance->bounds[group], weight, cost);
+        } else {
+            shift(&count[0], side, balance->bounds[group], weight, cost);
+            shift(&count[1], first, balance->bounds[group], weight, cost);
+        }
+    }
+    if (balance->classes == 0) {
+        shift(&balance->quarters[was], -1, balance->quarter, BALANCE_SHOULD, cost);
+        shift(&balance->quarters[value], 1, balance->quarter, BALANCE_SHOULD, cost);
     }
     balance->values[trial] = value;
 }
@@ -144,14 +202,17 @@ static void start_diagonal(const struct balance_design *design, struct random_st
 static uint32_t search(const struct balance_design *design, struct random_stream *stream, uint32_t classes,
                        uint32_t *values)
 {
-    struct balance balance = {.design = design, .classes = classes, .values = values, .cost = UINT32_MAX};
+    struct balance balance;
     uint32_t shuffles = design->trials <= BALANCE_SHORT ? BALANCE_SHUFFLES : 0;
-    for (uint32_t i = 0; i < shuffles && balance.cost > 0; i++) {
+    balance.design = design;
+    balance.classes = classes;
+    balance.values = values;
+    measure(&balance);
+    for (uint32_t i = 0; i < shuffles; i++) {
         random_shuffle(stream, values, design->trials);
-        count_all(&balance);
+        if (holds(&balance))
+            return 0;
     }
-    if (balance.cost == 0)
-        return 0;
     uint32_t kept[PROTOCOL_TRIALS], best = UINT32_MAX;
     memcpy(kept, values, design->trials * sizeof kept[0]);
     for (uint32_t i = 0; i < BALANCE_STARTS && best > 0; i++) {

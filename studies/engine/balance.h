@@ -30,8 +30,8 @@ struct balance_design {
     uint16_t digit[PROTOCOL_TRIALS][BALANCE_DIGITS];
     uint32_t groups; // at most BALANCE_MEMBERSHIPS * PROTOCOL_TRIALS
     uint32_t memberships;
-    uint16_t member[PROTOCOL_TRIALS][BALANCE_MEMBERSHIPS]; // group of each trial, one per grouping
-    uint32_t weight[BALANCE_MEMBERSHIPS];
+    uint16_t member[PROTOCOL_TRIALS][BALANCE_MEMBERSHIPS];          // group of each trial, one per grouping
+    uint32_t weight[BALANCE_MEMBERSHIPS], end[BALANCE_MEMBERSHIPS]; // of each grouping; end: of its groups
 };
 
 // Adds a grouping: trial i belongs to group key[i] (0..count-1) of it. The first grouping is the whole block.

@@ -16,6 +16,7 @@ struct draw {
     uint32_t pair[DRAW_TRIALS];  // bit 0: the tested option is in slot b; bit 1: the reference is shown first
     uint32_t order[DRAW_TRIALS]; // which trial of the block comes at each place
     uint32_t option;             // of a rating of one of two: 0 or 1 into block.options
+    uint32_t turn;               // by how many places of the block's scenes this participant's are moved on
     uint32_t excess;             // as plan.imbalance
 };
 

@@ -82,10 +82,10 @@ struct machine_view {
     uint32_t showing;       // sequential: 0 the first, 1 the second
     int64_t stimulus_ns;    // time on the trial's camera path: since its first frame, paused time taken out
     int64_t wait_ns;        // REST, BREAK: until START is taken
-    double level;           // of a staircase's parameter in this trial; NaN: none
-    const double *adjusted; // values of block.adjusts; NULL: none can be set
+    double level;           // of a staircase's parameter in the running trial or the next; NaN: none
+    const double *adjusted; // values of block.adjusts; NULL: not an adjust trial
     uint32_t adjusting;     // which one the keys change
-    uint32_t adjust_count;  // how many there are
+    uint32_t adjust_count;  // how many the keys can change
     const char *text;       // consent, instructions or question text to show; NULL where the screen has none
     const struct protocol_question *question; // of QUESTION and of a toggle trial; else NULL
     enum plan_slot subject;                   // QUESTION: the option asked about; NONE: what was shown, or both

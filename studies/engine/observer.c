@@ -186,7 +186,7 @@ static void arm(struct observer *observer, int64_t due_ns, enum machine_event_ki
 // Times to answer a screen vary little.
 #define OBSERVER_ANSWER_SPREAD 0.25
 
-#define OBSERVER_HURRY 0.8          // share of a deadline after which it answers
+#define OBSERVER_HURRY 0.6          // share of a deadline after which it answers; one more switch fits behind
 #define OBSERVER_LATE_NS 1000000000 // that a missed deadline lies behind, so that a slow frame notes it too
 
 static int64_t answer_ns(const struct observer *observer)
@@ -377,7 +377,7 @@ static bool adjust(struct observer *observer, const struct machine_view *view,
     struct random_stream stream = trial_stream(observer, PURPOSE_ADJUST, observer->step);
     if (observer->direction == 0)
         observer->direction = random_below(&stream, 2) ? 1 : -1;
-    else if (difference > observer->last_difference) {
+    else if (difference >= observer->last_difference) { // or no better, as at its end
         observer->direction = -observer->direction;
         observer->turns++;
     }
@@ -397,7 +397,7 @@ static void decide(struct observer *observer, const struct machine_view *view,
     else if (out->kind == MACHINE_RATE)
         out->value = view->question ? rate(observer, errors, view) : 0;
     else if (out->kind == MACHINE_START && view->screen == MACHINE_STIMULUS &&
-             !(view->adjusted && adjust(observer, view, errors, out)) && !view->may_go_on)
+             !(view->adjust_count > 0 && adjust(observer, view, errors, out)) && !view->may_go_on)
         out->kind = MACHINE_TOGGLE_KEY; // START would be lost, and the trial would wait for ever
     if (out->kind == MACHINE_TOGGLE_KEY || out->kind == MACHINE_START)
         out->value = 0;

@@ -40,19 +40,27 @@ struct protocol_option plan_level_option(const struct plan *plan, const struct p
     return option;
 }
 
+static bool same_values(const double *a, const double *b)
+{
+    for (uint32_t i = 0; i < CATALOGUE_PARAMETERS; i++)
+        if (a[i] < b[i] || a[i] > b[i])
+            return false;
+    return true;
+}
+
 // Index of a condition, added where it is new; -1: its JSON does not fit.
 static int32_t condition_index(struct plan *plan, const struct protocol_option *option)
 {
-    struct plan_condition made = {.mode = plan->protocol->catalogue->modes[option->mode].name,
-                                  .mode_index = option->mode};
-    memcpy(made.values, option->values, sizeof made.values);
-    if (!protocol_option_json(plan->protocol, option, made.parameters, sizeof made.parameters))
-        return -1;
     for (uint32_t i = 0; i < plan->condition_count; i++)
-        if (plan->conditions[i].mode_index == made.mode_index &&
-            strcmp(plan->conditions[i].parameters, made.parameters) == 0)
+        if (plan->conditions[i].mode_index == option->mode &&
+            same_values(plan->conditions[i].values, option->values))
             return (int32_t)i;
-    plan->conditions[plan->condition_count] = made;
+    struct plan_condition *made = &plan->conditions[plan->condition_count];
+    made->mode = plan->protocol->catalogue->modes[option->mode].name;
+    made->mode_index = option->mode;
+    memcpy(made->values, option->values, sizeof made->values);
+    if (!protocol_option_json(plan->protocol, option, made->parameters, sizeof made->parameters))
+        return -1;
     return (int32_t)plan->condition_count++;
 }
 

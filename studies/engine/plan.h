@@ -64,8 +64,8 @@ struct plan {
     struct plan_trial *trials;
     uint32_t trial_count;
     // By how many trials what DESIGN promises is missed, summed over the worst block: scenes within one over
-    // the block; sides and first-shown options within one over the block and each factor level. 0 for every
-    // full factorial.
+    // the trials that name none; sides and first-shown options within one over the block and each factor level.
+    // 0 for every full factorial.
     uint32_t imbalance;
 };
 
@@ -91,5 +91,20 @@ char *plan_table_json(const struct plan *plan);
 // came.
 char *plan_counts_text(const struct protocol *protocol, uint64_t seed, uint32_t first, uint32_t count);
 char *plan_counts_json(const struct protocol *protocol, uint64_t seed, uint32_t first, uint32_t count);
+
+// Each participant's plan in turn, until one is refused. False: out of memory, or refused.
+typedef bool (*plan_fn)(void *user, const struct plan *plan);
+bool plan_each(const struct protocol *protocol, uint64_t seed, uint32_t first, uint32_t count, plan_fn visit,
+               void *user);
+
+// First-order carry-over: how often each cell of a block came right after each other one, null and catch trials
+// in between apart.
+struct plan_carry {
+    uint32_t pairs;       // ordered pairs of different cells that one participant can get; 0: nothing follows
+    uint32_t least, most; // times that the rarest and the most frequent of them came
+    double even;          // times that each would come if all came equally often
+};
+bool plan_carry_over(const struct protocol *protocol, uint64_t seed, uint32_t first, uint32_t count,
+                     struct plan_carry out[PROTOCOL_BLOCKS]); // false: out of memory
 
 #endif

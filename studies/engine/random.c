@@ -52,11 +52,10 @@ uint64_t random_u64(struct random_stream *stream)
 uint32_t random_below(struct random_stream *stream, uint32_t n)
 {
     // Values under 2^32 mod n are drawn again, so that what is left is a whole number of rounds.
-    uint32_t surplus = (uint32_t)(0u - n) % n;
     uint32_t value;
     do
         value = random_u32(stream);
-    while (value < surplus);
+    while (value < n && value < (uint32_t)(0u - n) % n);
     return value % n;
 }
 

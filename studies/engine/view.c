@@ -77,10 +77,8 @@ static void look_at_stimulus(const struct machine *machine, const struct plan_tr
     out->trial_started = s->began_now;
     out->may_choose = stimulus_seen(machine);
     out->stimulus_ns = s->camera_ns;
-    out->level = machine->level;
-    bool adjusts = trial->kind == PROTOCOL_ADJUST && machine->answers[machine->trial] == 0;
-    out->adjusted = adjusts ? machine->adjusted : NULL;
-    out->adjust_count = machine_block(machine)->adjust_count;
+    out->adjusted = trial->kind == PROTOCOL_ADJUST ? machine->adjusted : NULL;
+    out->adjust_count = machine->answers[machine->trial] == 0 ? machine_block(machine)->adjust_count : 0;
     out->adjusting = machine->adjusting;
     // A choice between two that can be switched is made while looking at them.
     bool chooses = trial->kind == PROTOCOL_TOGGLE || trial->kind == PROTOCOL_STAIRCASE;
@@ -124,6 +122,24 @@ bool machine_option(const struct machine *machine, enum plan_slot slot, struct p
     return true;
 }
 
+// Of the running trial, or of the one that comes next where one does.
+static double level_of(const struct machine *machine, uint32_t next)
+{
+    switch (machine->screen) {
+    case MACHINE_INSTRUCTIONS:
+    case MACHINE_READY:
+    case MACHINE_REST:
+    case MACHINE_BREAK:
+        return next < course_places(machine) ? course_level(machine, next) : (double)NAN;
+    case MACHINE_STIMULUS:
+    case MACHINE_QUESTION:
+    case MACHINE_STORING:
+        return machine->level;
+    default:
+        return NAN;
+    }
+}
+
 void machine_look(const struct machine *machine, struct machine_view *out_view)
 {
     enum machine_screen screen = top_screen(machine);
@@ -138,7 +154,7 @@ void machine_look(const struct machine *machine, struct machine_view *out_view)
                                       .subject = PLAN_SLOT_NONE,
                                       .condition = -1,
                                       .fade = 1,
-                                      .level = NAN,
+                                      .level = level_of(machine, next),
                                       .last_value = machine->last_value,
                                       .total = places,
                                       .complete = machine->complete};

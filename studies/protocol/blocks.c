@@ -29,7 +29,8 @@ static bool block_options_read(struct reader *reader, const struct yaml_node *ma
     uint32_t least = pair ? 2 : 1, most = block->kind == PROTOCOL_TASK ? 1 : 2;
     if (!read_is_list(reader, list, what, least, most))
         return false;
-    return key_names(reader, map, "options", "option", names, most, block->options, &block->option_count);
+    return key_names(reader, map, &language_block, "options", "option", names, most, block->options,
+                     &block->option_count);
 }
 
 static bool block_scenes_read(struct reader *reader, const struct yaml_node *map, struct protocol_block *block)
@@ -39,11 +40,31 @@ static bool block_scenes_read(struct reader *reader, const struct yaml_node *map
     scene_names(reader, names);
     for (uint32_t i = 0; i < reader->protocol->scene_count; i++)
         block->scenes[block->scene_count++] = i;
-    if (!key_names(reader, map, "scenes", "scene", names, PROTOCOL_SCENES, block->scenes,
+    if (!key_names(reader, map, &language_block, "scenes", "scene", names, PROTOCOL_SCENES, block->scenes,
                    &block->scene_count) ||
         !key_word(reader, map, &language_block, "scene_use", &use))
         return false;
     block->scene_use = (enum protocol_scene_use)use;
+    return true;
+}
+
+// A block that comes later, or itself, can be no complement's first half.
+static bool later_check(struct reader *reader, const struct yaml_node *map, const struct yaml_node *node)
+{
+    bool later = false;
+    for (; map && node->kind == YAML_SCALAR; map = map->next, later = true) {
+        const struct yaml_node *name = map->kind == YAML_MAP ? yaml_get(map, "name") : NULL;
+        if (!name || name->kind != YAML_SCALAR || strcmp(name->text, node->text) != 0)
+            continue;
+        return later ? read_fail(reader, node,
+                                 "block '%.60s' comes later; a complement names an earlier one, so "
+                                 "turn the two around",
+                                 node->text)
+                     : read_fail(reader, node,
+                                 "block '%.60s' cannot be the complement of itself; name the block "
+                                 "before it",
+                                 node->text);
+    }
     return true;
 }
 
@@ -58,7 +79,7 @@ static bool complement_read(struct reader *reader, const struct yaml_node *map, 
     for (uint32_t i = 0; i < protocol->block_count; i++)
         names[i] = protocol->blocks[i].name;
     uint32_t index;
-    if (!read_word(reader, node, "complement_of", names, &index))
+    if (!later_check(reader, map, node) || !read_word(reader, node, "complement_of", names, &index))
         return false;
     const struct protocol_block *earlier = &protocol->blocks[index];
     if (block->kind != PROTOCOL_RATE || earlier->kind != PROTOCOL_RATE || earlier->complement_of >= 0)
@@ -166,6 +187,7 @@ bool blocks_read(struct reader *reader, const struct yaml_node *root, const stru
         return false;
     for (const struct yaml_node *node = list->first; node; node = node->next) {
         protocol->blocks[protocol->block_count].settings = *study;
+        protocol->block_places[protocol->block_count] = (struct protocol_place){node->line, node->column};
         if (!block_read(reader, node, &protocol->blocks[protocol->block_count]) || !groups_check(reader, node))
             return false;
         protocol->block_count++;

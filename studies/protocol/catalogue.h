@@ -14,12 +14,14 @@ struct catalogue_parameter {
     const char *unit;           // "deg", "" for a plain number
     double min, max, fallback;  // inclusive; fallback is the default
     const char *const *choices; // NULL-terminated words of a switch: its value is the word's index; else NULL
+    const char *about;          // one phrase; NULL: none
 };
 
 struct catalogue_mode {
     const char *name;
     const struct catalogue_parameter *parameters;
     uint32_t parameter_count;
+    const char *about; // what it is, one sentence; NULL: none
 };
 
 struct catalogue {

@@ -81,7 +81,7 @@ bool cell_change(struct reader *reader, const struct yaml_node *map, const struc
     uint32_t scene = 0, found = 0, role = cell->role;
     scene_names(reader, names);
     if (!read_section(reader, map, &language_level, NULL) || !change_options(reader, map, block, cell) ||
-        !key_names(reader, map, "scene", "scene", names, 1, &scene, &found) ||
+        !key_names(reader, map, &language_level, "scene", "scene", names, 1, &scene, &found) ||
         !key_word(reader, map, &language_level, "role", &role) ||
         !key_labels(reader, map, "labels", cell->labels) ||
         !settings_read(reader, yaml_get(map, "settings"), &cell->settings))
@@ -128,22 +128,6 @@ static bool question_check(struct reader *reader, const struct yaml_node *node,
     return true;
 }
 
-// A deadline that nobody can keep would bring the trial again for ever.
-static bool deadline_check(struct reader *reader, const struct yaml_node *node,
-                           const struct protocol_block *block, const struct protocol_settings *settings)
-{
-    bool switches =
-        block->kind == PROTOCOL_TOGGLE || block->kind == PROTOCOL_STAIRCASE || block->kind == PROTOCOL_ADJUST;
-    int64_t least = settings->fade_to_gray_ns + settings->fade_gray_ns + settings->fade_from_gray_ns +
-                    2 * settings->min_exposure_ns;
-    if (settings->deadline_ns == 0 || !switches || settings->deadline_ns > least)
-        return true;
-    return read_fail(reader, node,
-                     "block '%s' wants an answer within %g s, but to see both options takes %g s; set a longer "
-                     "'deadline_s' or a shorter 'min_exposure_s'",
-                     block->name, (double)settings->deadline_ns * 1e-9, (double)least * 1e-9);
-}
-
 static bool count_check(struct reader *reader, const struct yaml_node *node, const struct protocol_block *block,
                         const struct protocol_settings *settings)
 {
@@ -174,7 +158,7 @@ bool cell_check(struct reader *reader, const struct yaml_node *node, const struc
     const struct protocol_settings *settings = &cell->settings;
     bool pair = protocol_kind_is_pair(block->kind);
     if (!question_check(reader, node, block, cell) || !count_check(reader, node, block, settings) ||
-        !deadline_check(reader, node, block, settings))
+        !timing_check(reader, node, block, settings))
         return false;
     if (settings->foveate == PROTOCOL_FOVEATE_TARGET && settings->fixation == PROTOCOL_FIXATION_FREE)
         return read_fail(

@@ -1,7 +1,8 @@
 // What a block runs through, resolved into cells: factors with levels, or trials listed one by one.
 //
 // Every form of a factor becomes a list of the long form's levels, {option, scene, parameters, settings}, which
-// are laid over the block one factor after the other.
+// are laid over the block one factor after the other; those that say which option is shown come first, so that
+// the order of factors in the file does not matter to parameters.
 #include "studies/protocol/parts.h"
 
 #include "studies/protocol/text.h"
@@ -217,6 +218,11 @@ static void finish_cell(const struct protocol_block *block, struct protocol_cell
     }
 }
 
+static bool names_option(const struct yaml_node *change)
+{
+    return yaml_get(change, "option") || yaml_get(change, "options");
+}
+
 static bool factorial(struct reader *reader, const struct yaml_node *map, struct protocol_block *block,
                       const struct levels *levels)
 {
@@ -228,9 +234,13 @@ static bool factorial(struct reader *reader, const struct yaml_node *map, struct
             cell->level[f - 1] = (uint8_t)(rest % block->factors[f - 1].level_count);
             rest /= block->factors[f - 1].level_count;
         }
-        for (uint32_t f = 0; f < block->factor_count; f++)
-            if (!cell_change(reader, levels[f].change[cell->level[f]], block, cell))
+        for (uint32_t k = 0; k < 2 * block->factor_count; k++) {
+            uint32_t f = k % block->factor_count;
+            const struct yaml_node *change = levels[f].change[cell->level[f]];
+            bool now = names_option(change) == (k < block->factor_count);
+            if (now && !cell_change(reader, change, block, cell))
                 return false;
+        }
         finish_cell(block, cell);
         if (!cell_check(reader, map, block, cell))
             return false;

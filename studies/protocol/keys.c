@@ -60,12 +60,14 @@ bool key_word(struct reader *reader, const struct yaml_node *map, const struct l
     return !node || read_word(reader, node, key, language_find(section, key)->words, out_index);
 }
 
-bool key_range(struct reader *reader, const struct yaml_node *map, const char *key, int64_t min, int64_t max,
-               int64_t out[2])
+bool key_range(struct reader *reader, const struct yaml_node *map, const struct language_section *section,
+               const char *key, int64_t out[2])
 {
     const struct yaml_node *node = yaml_get(map, key);
+    const struct language_key *known = language_find(section, key);
     if (!node)
         return true;
+    int64_t min = (int64_t)known->item_min, max = (int64_t)known->item_max;
     if (!read_is_list(reader, node, key, 2, 2) || !read_integer(reader, node->first, key, min, max, &out[0]) ||
         !read_integer(reader, node->last, key, min, max, &out[1]))
         return false;
@@ -86,10 +88,12 @@ static bool one_name(struct reader *reader, const struct yaml_node *node, const 
     return true;
 }
 
-bool key_names(struct reader *reader, const struct yaml_node *map, const char *key, const char *what,
-               const char *const *known, uint32_t capacity, uint32_t *out, uint32_t *out_count)
+bool key_names(struct reader *reader, const struct yaml_node *map, const struct language_section *section,
+               const char *key, const char *what, const char *const *known, uint32_t capacity, uint32_t *out,
+               uint32_t *out_count)
 {
     const struct yaml_node *node = yaml_get(map, key);
+    const struct language_key *spec = language_find(section, key);
     if (!node)
         return true;
     *out_count = 0;
@@ -97,7 +101,8 @@ bool key_names(struct reader *reader, const struct yaml_node *map, const char *k
         *out_count = 1;
         return one_name(reader, node, what, known, out, 0);
     }
-    if (!read_is_list(reader, node, key, 1, capacity))
+    uint32_t least = spec->type == LANGUAGE_NAME ? 1 : (uint32_t)spec->min;
+    if (!read_is_list(reader, node, key, least, capacity))
         return false;
     for (const struct yaml_node *each = node->first; each; each = each->next)
         if (!one_name(reader, each, what, known, out, (*out_count)++))

@@ -33,8 +33,8 @@ static const struct language_key protocol_keys[] = {
      .example = "reference: regular"},
     {"settings", LANGUAGE_MAP, false, .of = "settings", .about = "For every block that does not set its own.",
      .example = "settings: {camera: path, question: prefer}"},
-    {"questions", LANGUAGE_TABLE, true, 1, 16, .of = "the question",
-     .about = "What participants are asked, by names of your own.",
+    {"questions", LANGUAGE_TABLE, false, 1, 16, .of = "the question",
+     .about = "What participants are asked, by names of your own; adjustments alone need none.",
      .example = "questions: {prefer: {text: \"Which one do you prefer, A or B?\"}}"},
     {"instructions", LANGUAGE_TEXT, true, .about = "Shown once, before everything.",
      .example = "instructions: You will look around in scenes and judge them."},
@@ -122,7 +122,7 @@ static const struct language_key settings_keys[] = {
     {"ratings", LANGUAGE_NAMES, false, 0, 4,
      .about = "Questions with a scale asked of both options, after the choice between them.",
      .example = "ratings: quality"},
-    {"spheres", LANGUAGE_LIST, false, 2, 2,
+    {"spheres", LANGUAGE_LIST, false, 2, 2, .items = LANGUAGE_INTEGER, .item_min = 1, .item_max = 64,
      .about = "Coloured spheres along the flight: as many as drawn for the trial between these two.",
      .example = "spheres: [4, 9]"},
     {"count", LANGUAGE_NAME, false, .about = "The question with a count that asks for their number.",
@@ -143,11 +143,11 @@ static const struct language_key fade_keys[] = {
 static const struct language_key question_keys[] = {
     {"text", LANGUAGE_TEXT, true, .about = "As the participant reads it.",
      .example = "text: How good does it look?"},
-    {"scale", LANGUAGE_LIST, false, 2, 2,
+    {"scale", LANGUAGE_LIST, false, 2, 2, .items = LANGUAGE_INTEGER, .item_min = -100, .item_max = 100,
      .about = "Makes it a rating: whole numbers from the first to the second.", .example = "scale: [1, 10]"},
-    {"count", LANGUAGE_LIST, false, 2, 2, .about = "Makes it a count between the first and the second.",
-     .example = "count: [0, 20]"},
-    {"labels", LANGUAGE_LIST, false, 2, 2, .about = "What the ends of a scale mean.",
+    {"count", LANGUAGE_LIST, false, 2, 2, .items = LANGUAGE_INTEGER, .item_max = 1000,
+     .about = "Makes it a count between the first and the second.", .example = "count: [0, 20]"},
+    {"labels", LANGUAGE_LIST, false, 2, 2, .items = LANGUAGE_TEXT, .about = "What the ends of a scale mean.",
      .example = "labels: [strongly disagree, strongly agree]"},
     {"equal", LANGUAGE_WORD, false, .words = NO_YES, .fallback = "no",
      .about = "Whether \"equal\" is an answer to a choice.", .example = "equal: yes"},
@@ -174,7 +174,7 @@ static const struct language_key attribute_keys[] = {
      .example = "prompt: Age in years"},
     {"min", LANGUAGE_NUMBER, false, -1e15, 1e15, .about = "Smallest number.", .example = "min: 18"},
     {"max", LANGUAGE_NUMBER, false, -1e15, 1e15, .about = "Largest number.", .example = "max: 99"},
-    {"choices", LANGUAGE_NAMES, false, 2, 16, .about = "Of a choice.", .example = "choices: [never, often]"},
+    {"choices", LANGUAGE_LIST, false, 2, 16, .about = "Of a choice.", .example = "choices: [never, often]"},
     {0},
 };
 
@@ -201,8 +201,11 @@ static const struct language_key exclusion_keys[] = {
      .example = "rule: gaze_loss"},
     {"of", LANGUAGE_WORD, false, .words = WORDS("trial", "rating_pair", "person"), .fallback = "trial",
      .about = "What is taken out: the trial, a rating and its pair, or the person.", .example = "of: trial"},
-    {"above", LANGUAGE_NUMBER, false, 0, 1e9, .about = "The rule holds above this.", .example = "above: 0.2"},
-    {"below", LANGUAGE_NUMBER, false, 0, 1e9, .about = "The rule holds below this.", .example = "below: 0.2"},
+    {"above", LANGUAGE_NUMBER, false, 0, 1e9,
+     .fallback = "gaze_loss 0.2, gaze_gap_ms 500, late_frames 0.01, else 0",
+     .about = "The rule holds above this.", .example = "above: 0.2"},
+    {"below", LANGUAGE_NUMBER, false, 0, 1e9, .fallback = "unseen_option 1, reaction 0.2",
+     .about = "The rule holds below this: of unseen_option and reaction.", .example = "below: 0.2"},
     {"share", LANGUAGE_NUMBER, false, 0, 1, .fallback = "0.5",
      .about = "Of a person: goes out where the rule holds in more than this share of the trials.",
      .example = "share: 0.25"},
@@ -221,12 +224,12 @@ static const struct language_key block_keys[] = {
      .example = "kind: toggle"},
     {"role", LANGUAGE_WORD, false, .words = WORDS("main", "practice"), .fallback = "main",
      .about = "practice: trials that no analysis counts.", .example = "role: practice"},
-    {"options", LANGUAGE_NAMES, true, 1, 2,
+    {"options", LANGUAGE_LIST, true, 1, 2,
      .about =
          "The option under test and the one it is compared with. A rate block of two rates one of them, drawn.",
      .example = "options: [foveated, regular]"},
-    {"scenes", LANGUAGE_NAMES, false, 1, 16, .fallback = "all", .about = "Scenes of this block.",
-     .example = "scenes: [atrium]"},
+    {"scenes", LANGUAGE_NAMES, false, 1, 16, .fallback = "every scene of the study",
+     .about = "Scenes of this block.", .example = "scenes: [atrium]"},
     {"scene_use", LANGUAGE_WORD, false, .words = WORDS("alternate", "random"),
      .fallback = "random of rate, else alternate",
      .about = "alternate: each cell's scene changes from participant to participant; random: one drawn for the "
@@ -279,9 +282,9 @@ static const struct language_key factor_keys[] = {
      .about = "The levels are values of this parameter.", .example = "parameter: fovea_deg"},
     {"option", LANGUAGE_NAME, false, .fallback = "the option under test", .about = "Whose parameter it is.",
      .example = "option: foveated"},
-    {"options", LANGUAGE_NAMES, false, 1, 16, .about = "Instead: these options take the tested one's place.",
+    {"options", LANGUAGE_LIST, false, 1, 16, .about = "Instead: these options take the tested one's place.",
      .example = "options: [small, medium, large]"},
-    {"scenes", LANGUAGE_NAMES, false, 1, 16, .about = "Instead: these scenes, or `all`.",
+    {"scenes", LANGUAGE_LIST, false, 1, 16, .words = WORDS("all"), .about = "Instead: these scenes, or all.",
      .example = "scenes: all"},
     {"setting", LANGUAGE_NAME, false, .about = "Instead: the levels are values of this setting.",
      .example = "setting: ssao"},
@@ -306,9 +309,10 @@ static const struct language_key level_keys[] = {
      .example = "role: null"},
     {"scene", LANGUAGE_NAME, false, .about = "The scene.", .example = "scene: town"},
     {"option", LANGUAGE_NAME, false, .about = "Takes the tested option's place.", .example = "option: mixed"},
-    {"options", LANGUAGE_NAMES, false, 2, 2, .about = "Takes both places.",
+    {"options", LANGUAGE_LIST, false, 2, 2, .about = "Takes both places.",
      .example = "options: [foveated, mixed]"},
-    {"parameters", LANGUAGE_TABLE, false, 1, 2, .about = "Parameters of the options shown, by option.",
+    {"parameters", LANGUAGE_TABLE, false, 1, 4, .of = "parameters",
+     .about = "Parameters of the options shown, by option; `tested` and `reference` name the places.",
      .example = "parameters: {foveated: {epsilon: 0.3}}"},
     {"settings", LANGUAGE_MAP, false, .of = "settings", .about = "Settings that differ.",
      .example = "settings: {ssao: on}"},
@@ -319,14 +323,14 @@ static const struct language_key catch_keys[] = {
     {"count", LANGUAGE_INTEGER, true, 1, 64, .about = "How many.", .example = "count: 2"},
     {"option", LANGUAGE_NAME, true, .about = "The obviously different option, in the tested one's place.",
      .example = "option: blurred"},
-    {"parameters", LANGUAGE_TABLE, false, 1, 2, .about = "Its parameters that differ, by option.",
-     .example = "parameters: {blurred: {epsilon: 0}}"},
+    {"parameters", LANGUAGE_TABLE, false, 1, 4, .of = "parameters",
+     .about = "Its parameters that differ, by option.", .example = "parameters: {blurred: {epsilon: 0}}"},
     {0},
 };
 
 static const struct language_key adjust_keys[] = {
-    {"start", LANGUAGE_LIST, true, 2, 2, .about = "The first value is drawn between these two.",
-     .example = "start: [0.05, 0.5]"},
+    {"start", LANGUAGE_LIST, true, 2, 2, .items = LANGUAGE_NUMBER, .item_min = -1e15, .item_max = 1e15,
+     .about = "The first value is drawn between these two.", .example = "start: [0.05, 0.5]"},
     {"step", LANGUAGE_NUMBER, true, 1e-9, 1e9, .about = "Change by one key press.", .example = "step: 0.01"},
     {"min", LANGUAGE_NUMBER, false, -1e15, 1e15, .fallback = "the parameter's", .about = "Lower end.",
      .example = "min: 0"},
@@ -351,7 +355,7 @@ static const struct language_key staircase_keys[] = {
      .example = "reversals: 12"},
     {"start", LANGUAGE_NUMBER, false, -1e9, 1e9, .about = "Of up-down: the first level.",
      .example = "start: 0.5"},
-    {"steps", LANGUAGE_LIST, false, 1, 16,
+    {"steps", LANGUAGE_LIST, false, 1, 16, .items = LANGUAGE_NUMBER, .item_max = 1e9,
      .about =
          "Of up-down: sizes of the steps up to each reversal, the last from then on; with log spacing factors.",
      .example = "steps: [0.1, 0.05, 0.02]"},
@@ -384,68 +388,62 @@ static const struct language_key model_keys[] = {
 static const struct language_key grid_keys[] = {
     {"min", LANGUAGE_NUMBER, true, -1e9, 1e9, .about = "First value.", .example = "min: 0.01"},
     {"max", LANGUAGE_NUMBER, true, -1e9, 1e9, .about = "Last value.", .example = "max: 1"},
-    {"count", LANGUAGE_INTEGER, false, 1, 10000, .fallback = "1", .about = "How many values, ends included.",
-     .example = "count: 25"},
+    {"count", LANGUAGE_INTEGER, false, 1, 10000, .fallback = "1",
+     .about = "How many values, ends included; of up-down levels none.", .example = "count: 25"},
     {"spacing", LANGUAGE_WORD, false, .words = WORDS("linear", "log"), .fallback = "linear",
      .about = "Equal differences or equal ratios.", .example = "spacing: log"},
     {0},
 };
 
-const struct language_section language_protocol = {"the protocol", "A study.", protocol_keys, false};
+const struct language_section language_protocol = {"the protocol", "A study.", protocol_keys, false,
+                                                   LANGUAGE_NO_SHORT};
 const struct language_section language_scene = {"the scene", "A scene with what stands in for it.", scene_keys,
-                                                false};
-const struct language_section language_option = {"the option", "A mode with its parameters.", option_keys,
-                                                 true};
+                                                false, LANGUAGE_SHORT_NAME};
+const struct language_section language_option = {"the option", "A mode with its parameters.", option_keys, true,
+                                                 LANGUAGE_NO_SHORT};
 const struct language_section language_settings = {
     "settings", "What cascades: of the study, a block, a factor's level or a trial; the innermost holds.",
-    settings_keys, true};
-const struct language_section language_fade = {"fade", "The gray fade at each switch.", fade_keys, false};
+    settings_keys, true, LANGUAGE_NO_SHORT};
+const struct language_section language_fade = {"fade", "The gray fade at each switch.", fade_keys, false,
+                                               LANGUAGE_NO_SHORT};
 const struct language_section language_question = {
-    "the question", "A choice between the two options, unless it has a scale or a count.", question_keys,
-    false};
-const struct language_section language_consent = {"consent", "What is agreed to.", consent_keys, false};
+    "the question", "A choice between the two options, unless it has a scale or a count.", question_keys, false,
+    LANGUAGE_NO_SHORT};
+const struct language_section language_consent = {"consent", "What is agreed to.", consent_keys, false,
+                                                  LANGUAGE_NO_SHORT};
 const struct language_section language_attribute = {"the attribute", "Something about a participant.",
-                                                    attribute_keys, false};
+                                                    attribute_keys, false, LANGUAGE_NO_SHORT};
 const struct language_section language_exclusion = {"the exclusion", "A rule that takes data out.",
-                                                    exclusion_keys, false};
+                                                    exclusion_keys, false, LANGUAGE_NO_SHORT};
 const struct language_section language_analysis = {"the analysis", "A planned computation.", analysis_keys,
-                                                   false};
-const struct language_section language_block = {"the block", "Trials of one kind.", block_keys, false};
+                                                   false, LANGUAGE_NO_SHORT};
+const struct language_section language_block = {"the block", "Trials of one kind.", block_keys, false,
+                                                LANGUAGE_NO_SHORT};
 const struct language_section language_factor = {
     "the factor", "A list of values of a parameter of the tested option, or one of these forms.", factor_keys,
-    false};
+    false, LANGUAGE_SHORT_VALUES};
 const struct language_section language_level = {"the level", "What one level, or one listed trial, changes.",
-                                                level_keys, false};
+                                                level_keys, false, LANGUAGE_NO_SHORT};
 const struct language_section language_catch = {"catch", "Trials with an obvious difference.", catch_keys,
-                                                false};
+                                                false, LANGUAGE_NO_SHORT};
 const struct language_section language_adjust = {"the adjustment", "A parameter that the participant sets.",
-                                                 adjust_keys, false};
+                                                 adjust_keys, false, LANGUAGE_NO_SHORT};
 const struct language_section language_staircase = {"the staircase", "An adaptive method.", staircase_keys,
-                                                    false};
-const struct language_section language_model = {"the model", "What QUEST+ weighs.", model_keys, false};
+                                                    false, LANGUAGE_NO_SHORT};
+const struct language_section language_model = {"the model", "What QUEST+ weighs.", model_keys, false,
+                                                LANGUAGE_NO_SHORT};
 const struct language_section language_grid = {"the grid", "Values from one end to the other.", grid_keys,
-                                               false};
+                                               false, LANGUAGE_NO_SHORT};
+
+static const struct language_key no_keys[] = {{0}};
+const struct language_section language_parameters = {"parameters", "Values of a mode's parameters, by name.",
+                                                     no_keys, true, LANGUAGE_NO_SHORT};
 
 const struct language_section *const language_sections[] = {
-    &language_protocol,
-    &language_scene,
-    &language_option,
-    &language_settings,
-    &language_fade,
-    &language_question,
-    &language_consent,
-    &language_attribute,
-    &language_block,
-    &language_factor,
-    &language_level,
-    &language_catch,
-    &language_adjust,
-    &language_staircase,
-    &language_model,
-    &language_grid,
-    &language_exclusion,
-    &language_analysis,
-    0,
+    &language_protocol, &language_scene,      &language_option,    &language_settings, &language_fade,
+    &language_question, &language_consent,    &language_attribute, &language_block,    &language_factor,
+    &language_level,    &language_parameters, &language_catch,     &language_adjust,   &language_staircase,
+    &language_model,    &language_grid,       &language_exclusion, &language_analysis, 0,
 };
 
 const struct language_key *language_find(const struct language_section *section, const char *key)

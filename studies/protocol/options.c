@@ -88,10 +88,14 @@ static bool scene_read(struct reader *reader, const struct yaml_node *node, uint
             !key_labels(reader, node, "labels", protocol->scene_labels[place]))
             return false;
         name = yaml_get(node, "name");
+        const struct yaml_node *stand_in = yaml_get(node, "stand_in");
+        if (stand_in)
+            protocol->stand_in_places[place] = (struct protocol_place){stand_in->line, stand_in->column};
     } else if (!(protocol->stand_ins[place] = arena_text(reader->arena, "", 0))) {
         return read_fail(reader, node, "out of memory");
     }
     uint32_t index;
+    protocol->scene_places[place] = (struct protocol_place){name->line, name->column};
     if (!read_name(reader, name, "scene", protocol->scenes[place]) ||
         (!*protocol->stand_ins[place] && !read_word(reader, name, "scene", known, &index)))
         return false;

@@ -53,6 +53,15 @@ bool cells_read(struct reader *reader, const struct yaml_node *map, struct proto
 bool extras_read(struct reader *reader, const struct yaml_node *map, struct protocol_block *block);
 bool adjusts_read(struct reader *reader, const struct yaml_node *map, struct protocol_block *block);
 
+// agree.c
+// What the parts of a protocol say of one another, as remarks.
+void agreement_remark(struct reader *reader, const struct yaml_node *root);
+
+// timing.c
+// False where a trial's times contradict each other; odd ones are remarked.
+bool timing_check(struct reader *reader, const struct yaml_node *node, const struct protocol_block *block,
+                  const struct protocol_settings *settings);
+
 // staircase.c
 bool staircase_read(struct reader *reader, const struct yaml_node *map, struct protocol_block *block);
 

@@ -8,7 +8,7 @@ static bool scale_read(struct reader *reader, const struct yaml_node *map, struc
     int64_t ends[2] = {0, 0};
     if (scale && count)
         return read_fail_key(reader, count, "a question has a scale or a count; remove one");
-    if (!key_range(reader, map, scale ? "scale" : "count", count ? 0 : -100, count ? 1000 : 100, ends))
+    if (!key_range(reader, map, &language_question, scale ? "scale" : "count", ends))
         return false;
     if (scale && ends[0] == ends[1])
         return read_fail(reader, scale, "the scale ends where it begins, at %d; widen it", (int)ends[0]);
@@ -49,6 +49,8 @@ bool questions_read(struct reader *reader, const struct yaml_node *root)
 {
     struct protocol *protocol = reader->protocol;
     const struct yaml_node *map = yaml_get(root, "questions");
+    if (!map)
+        return true;
     if (!read_is_map(reader, map, "questions"))
         return false;
     if (map->count == 0 || map->count > PROTOCOL_QUESTIONS)

@@ -38,10 +38,14 @@ static bool all_read(struct reader *reader, const struct yaml_node *root)
 {
     struct protocol_settings settings;
     settings_defaults(reader->catalogue, &settings);
-    return head_read(reader, root) && scenes_read(reader, root) && options_read(reader, root) &&
-           questions_read(reader, root) && consent_read(reader, root) && participant_read(reader, root) &&
-           analysis_read(reader, root) && exclude_read(reader, root) &&
-           settings_read(reader, yaml_get(root, "settings"), &settings) && blocks_read(reader, root, &settings);
+    bool ok = head_read(reader, root) && scenes_read(reader, root) && options_read(reader, root) &&
+              questions_read(reader, root) && consent_read(reader, root) && participant_read(reader, root) &&
+              analysis_read(reader, root) && exclude_read(reader, root) &&
+              settings_read(reader, yaml_get(root, "settings"), &settings) &&
+              blocks_read(reader, root, &settings);
+    if (ok)
+        agreement_remark(reader, root);
+    return ok;
 }
 
 struct protocol *protocol_parse(const char *name, const char *text, size_t size,

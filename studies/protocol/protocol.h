@@ -3,7 +3,8 @@
 // Use: protocol_load -> read the struct (nothing changes it) -> protocol_destroy.
 // Settings cascade study > block > trial: protocol_block and protocol_cell hold theirs already resolved.
 // Does not: order trials (engine/plan.h), know the renderer (the caller hands a catalogue), read the clock.
-// Errors: one sentence "file:line:column: what is wrong; what to do". The first error only.
+// Errors: one sentence "file:line:column: what is wrong; what to do". The first error only. What can be run but
+// hardly is what was meant (a break that never comes, an option that nobody sees) is not an error: see remarks.
 #ifndef STUDIES_PROTOCOL_PROTOCOL_H
 #define STUDIES_PROTOCOL_PROTOCOL_H
 
@@ -34,7 +35,12 @@ enum {
     PROTOCOL_ATTRIBUTES = 16,
     PROTOCOL_CHOICES = 16, // per attribute
     PROTOCOL_ANALYSES = 16,
-    PROTOCOL_ERROR = 1024 // bytes that hold any error sentence
+    PROTOCOL_REMARKS = 64, // more are not kept
+    PROTOCOL_ERROR = 1024  // bytes that hold any error sentence
+};
+
+struct protocol_place {
+    uint32_t line, column; // in the file, from 1
 };
 
 // What is done in a trial. The `kind` column of the store has these words for PROTOCOL_MAIN trials, and else
@@ -246,6 +252,7 @@ struct protocol {
     char scenes[PROTOCOL_SCENES][PROTOCOL_NAME];
     char *stand_ins[PROTOCOL_SCENES]; // what is shown where the name is not bound; "" for none
     char scene_labels[PROTOCOL_SCENES][PROTOCOL_LABELS]; // members for the factors JSON
+    struct protocol_place scene_places[PROTOCOL_SCENES], stand_in_places[PROTOCOL_SCENES];
     uint32_t scene_count;
     struct protocol_option options[PROTOCOL_OPTIONS];
     uint32_t option_count;
@@ -261,7 +268,10 @@ struct protocol {
     struct protocol_exclusion exclusions[PROTOCOL_RULES];
     uint32_t exclusion_count;
     struct protocol_block blocks[PROTOCOL_BLOCKS];
+    struct protocol_place block_places[PROTOCOL_BLOCKS];
     uint32_t block_count;
+    char *remarks[PROTOCOL_REMARKS]; // sentences as errors are, in the order of the file's sections
+    uint32_t remark_count;
     char *text; // the file as it is, terminated; what the store keeps
     size_t text_size;
     uint8_t sha256[SHA256_BYTES]; // of the text's bytes

@@ -36,6 +36,25 @@ bool read_fail_key(struct reader *reader, const struct yaml_node *node, const ch
     return false;
 }
 
+void read_remark(struct reader *reader, const struct yaml_node *node, const char *format, ...)
+{
+    char sentence[PROTOCOL_ERROR];
+    struct reader aside = *reader; // so that an error's sentence stays
+    struct protocol *protocol = reader->protocol;
+    va_list args;
+    if (protocol->remark_count == PROTOCOL_REMARKS)
+        return;
+    aside.error = sentence;
+    aside.error_size = sizeof sentence;
+    va_start(args, format);
+    place(&aside, node->key ? node->key_line : node->line, node->key ? node->key_column : node->column, format,
+          args);
+    va_end(args);
+    char *kept = arena_text(reader->arena, sentence, strlen(sentence));
+    if (kept)
+        protocol->remarks[protocol->remark_count++] = kept;
+}
+
 // Levenshtein 1966: insertions, deletions and replacements of one byte; words are at most PROTOCOL_NAME long.
 static size_t distance(const char *a, const char *b)
 {

@@ -22,6 +22,9 @@ bool read_fail(struct reader *reader, const struct yaml_node *node, const char *
 // The same, placed at the node's name in its mapping.
 bool read_fail_key(struct reader *reader, const struct yaml_node *node, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+// A sentence for protocol.remarks, placed at the node, or at its name where it has one.
+void read_remark(struct reader *reader, const struct yaml_node *node, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 // "WHAT 'word' is not known here; did you mean 'nearest'?" or the list of what is; known ends with NULL.
 bool read_unknown(struct reader *reader, const struct yaml_node *node, bool at_key, const char *what,
                   const char *word, const char *const *known);
@@ -64,12 +67,13 @@ bool key_seconds(struct reader *reader, const struct yaml_node *map, const struc
                  const char *key, int64_t *out_ns);
 bool key_word(struct reader *reader, const struct yaml_node *map, const struct language_section *section,
               const char *key, uint32_t *out_index);
-// Two whole numbers in order, both from min to max.
-bool key_range(struct reader *reader, const struct yaml_node *map, const char *key, int64_t min, int64_t max,
-               int64_t out[2]);
+// Two whole numbers in order, both within the range of the list's items.
+bool key_range(struct reader *reader, const struct yaml_node *map, const struct language_section *section,
+               const char *key, int64_t out[2]);
 // A name or a list of names, each one of `known`; at most `capacity` indices, none twice.
-bool key_names(struct reader *reader, const struct yaml_node *map, const char *key, const char *what,
-               const char *const *known, uint32_t capacity, uint32_t *out, uint32_t *out_count);
+bool key_names(struct reader *reader, const struct yaml_node *map, const struct language_section *section,
+               const char *key, const char *what, const char *const *known, uint32_t capacity, uint32_t *out,
+               uint32_t *out_count);
 // The key of a node in its mapping as a name of the file's own.
 bool read_key_name(struct reader *reader, const struct yaml_node *node, const char *what,
                    char out[PROTOCOL_NAME]);

@@ -36,12 +36,12 @@ const char *protocol_rule_name(enum protocol_rule rule)
 
 // Each rule's limits where the file gives none. Ours: the issue names one second of exposure; the others follow
 // what the field reports (2 to 10 % loss is ordinary, 44 % a lost session; reactions under 0.2 s are no
-// judgements).
+// judgements). Of a person's catch trials the limit is `share` unless the file has `above`.
 static void rule_defaults(struct protocol_exclusion *rule)
 {
     static const double above[PROTOCOL_RULE_KINDS] = {
         [PROTOCOL_UNSEEN_OPTION] = NAN, [PROTOCOL_GAZE_LOSS] = 0.2, [PROTOCOL_GAZE_GAP] = 500,
-        [PROTOCOL_LATE_FRAMES] = 0.01,  [PROTOCOL_REACTION] = NAN,  [PROTOCOL_FAILED_CATCH] = 0,
+        [PROTOCOL_LATE_FRAMES] = 0.01,  [PROTOCOL_REACTION] = NAN,  [PROTOCOL_FAILED_CATCH] = NAN,
         [PROTOCOL_FALLBACK] = 0};
     rule->above = above[rule->rule];
     rule->below = rule->rule == PROTOCOL_UNSEEN_OPTION ? 1 : rule->rule == PROTOCOL_REACTION ? 0.2 : NAN;

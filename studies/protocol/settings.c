@@ -81,12 +81,12 @@ static bool asked_read(struct reader *reader, const struct yaml_node *map, struc
         names[i] = reader->protocol->questions[i].name;
     uint32_t count_question = 0, found = 0;
     int64_t spheres[2] = {settings->spheres[0], settings->spheres[1]};
-    if (!key_names(reader, map, "question", "question", names, PROTOCOL_ASKED, settings->asked,
-                   &settings->asked_count) ||
-        !key_names(reader, map, "ratings", "question", names, PROTOCOL_ASKED, settings->ratings,
-                   &settings->rating_count) ||
-        !key_names(reader, map, "count", "question", names, 1, &count_question, &found) ||
-        !key_range(reader, map, "spheres", 1, 64, spheres))
+    if (!key_names(reader, map, &language_settings, "question", "question", names, PROTOCOL_ASKED,
+                   settings->asked, &settings->asked_count) ||
+        !key_names(reader, map, &language_settings, "ratings", "question", names, PROTOCOL_ASKED,
+                   settings->ratings, &settings->rating_count) ||
+        !key_names(reader, map, &language_settings, "count", "question", names, 1, &count_question, &found) ||
+        !key_range(reader, map, &language_settings, "spheres", spheres))
         return false;
     if (found)
         settings->count_question = (int32_t)count_question;

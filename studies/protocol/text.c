@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { TEXT_GUESS = 64 }; // bytes that most additions need at most
+
 static bool text_room(struct text *text, size_t more)
 {
     if (text->failed)
@@ -25,33 +27,39 @@ static bool text_room(struct text *text, size_t more)
 
 void text_add(struct text *text, const char *format, ...)
 {
-    va_list args;
+    if (!text_room(text, TEXT_GUESS))
+        return;
+    va_list args, again;
     va_start(args, format);
-    va_list again;
     va_copy(again, args);
-    int length = vsnprintf(NULL, 0, format, args);
+    size_t room = text->capacity - text->size;
+    int length = vsnprintf(text->data + text->size, room, format, args);
     va_end(args);
     if (length < 0)
         text->failed = true;
-    else if (text_room(text, (size_t)length)) {
+    else if ((size_t)length >= room && text_room(text, (size_t)length))
         vsnprintf(text->data + text->size, (size_t)length + 1, format, again);
-        text->size += (size_t)length;
-    }
     va_end(again);
+    if (!text->failed)
+        text->size += (size_t)length;
 }
 
 void text_json_string(struct text *text, const char *value)
 {
     text_add(text, "\"");
     for (const char *c = value; *c; c++) {
+        const char *plain = c; // the longest stretch that stands as it is
+        while ((unsigned char)*c >= 0x20 && *c != 0x7f && *c != '"' && *c != '\\')
+            c++;
+        text_add(text, "%.*s", (int)(c - plain), plain);
+        if (!*c)
+            break;
         if (*c == '"' || *c == '\\')
             text_add(text, "\\%c", *c);
         else if (*c == '\n')
             text_add(text, "\\n");
-        else if ((unsigned char)*c < 0x20 || *c == 0x7f)
-            text_add(text, "\\u%04x", (unsigned)(unsigned char)*c);
         else
-            text_add(text, "%c", *c);
+            text_add(text, "\\u%04x", (unsigned)(unsigned char)*c);
     }
     text_add(text, "\"");
 }

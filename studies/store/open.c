@@ -17,7 +17,9 @@ enum {
     DEFAULT_FLUSH_MS = 250,
     MAX_FLUSH_MS = 1000,
     DEFAULT_GAZE = 65536,
-    DEFAULT_LOG = 16384
+    DEFAULT_LOG = 16384,
+    OWNER_WAIT_MS = 600,
+    OWNER_STEP_MS = 20
 };
 
 // --- the file ---
@@ -82,10 +84,23 @@ static enum store_result check_rights(struct store *store, struct store_error *e
     return STORE_REFUSED;
 }
 
+// A program that was just killed holds its lock until the system has cleared it away, which for one with a GPU
+// takes a moment; who resumes at once must not be told to end it.
+static enum owner_result wait_for_owner(struct store *store, long *out_pid)
+{
+    enum owner_result result = OWNER_OTHER;
+    for (int left_ms = OWNER_WAIT_MS;; left_ms -= OWNER_STEP_MS) {
+        result = owner_take(&store->owner, store->path, out_pid);
+        if (result != OWNER_OTHER || left_ms <= 0)
+            return result;
+        usleep(OWNER_STEP_MS * 1000);
+    }
+}
+
 static enum store_result take_owner(struct store *store, struct store_error *error)
 {
     long pid = 0;
-    switch (owner_take(&store->owner, store->path, &pid)) {
+    switch (wait_for_owner(store, &pid)) {
     case OWNER_HELD:
         return STORE_OK;
     case OWNER_OTHER:
@@ -181,6 +196,18 @@ static enum store_result identify(struct store *store, const struct store_desc *
     return STORE_OK;
 }
 
+static const char writing[] =
+    "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA temp_store = MEMORY";
+
+enum store_result sql_reconnect(struct store *store, struct store_error *error)
+{
+    disconnect(store);
+    enum store_result result = connect(store, store->path, NULL, error);
+    if (result == STORE_OK)
+        result = sql_execute(store, writing, error);
+    return result == STORE_OK ? sql_execute(store, "PRAGMA foreign_keys = ON", error) : result;
+}
+
 static enum store_result prepare_database(struct store *store, const struct store_desc *desc,
                                           struct store_error *error)
 {
@@ -193,8 +220,7 @@ static enum store_result prepare_database(struct store *store, const struct stor
     if (result == STORE_OK && store->reading)
         result = sql_execute(store, "PRAGMA query_only = ON", error);
     if (result == STORE_OK && !store->reading)
-        result = sql_execute(
-            store, "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA temp_store = MEMORY", error);
+        result = sql_execute(store, writing, error);
     if (result == STORE_OK && !store->reading)
         result = migrate_apply(store, &ladder, state, error);
     if (result == STORE_OK)

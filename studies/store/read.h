@@ -62,6 +62,7 @@ struct store_trial_row {
     char chosen;       // 't' test, 'r' reference, '=' equal, '?' no test slot; 0: no answer
     bool chosen_first; // the option that was shown first
     bool chosen_a;     // slot a
+    int correct;       // 1, 0, or -1: a preference, or no answer
     double reaction_s; // NaN: not known
     int64_t toggles;
 };
@@ -70,6 +71,7 @@ struct store_rating_row {
     int64_t id, session_id, trial_id; // trial_id 0: of the session
     int64_t ordinal;                  // of the trial
     const char *trial_status;         // "" for a rating of the session
+    const char *trial_kind;           // the same
     const char *question, *block, *scene;
     int64_t condition_id; // 0: none
     double value, scale_min, scale_max;

@@ -161,6 +161,7 @@ static bool trial_row(sqlite3_stmt *s, const struct call *call)
         .toggles = sqlite3_column_int64(s, 14),
         .chosen_first = sqlite3_column_int(s, 15),
         .chosen_a = strcmp(chosen, "a") == 0,
+        .correct = sqlite3_column_type(s, 17) == SQLITE_NULL ? -1 : sqlite3_column_int(s, 17),
     };
     if (strcmp(chosen, "equal") == 0)
         row.chosen = '=';
@@ -174,7 +175,7 @@ bool store_read_trials(struct store_reader *reader, store_trial_fn each, void *u
     static const char sql[] =
         "SELECT t.id, t.session_id, t.ordinal, t.repeat_of, t.block, t.kind, t.scene, t.factors, t.option_a,"
         " t.option_b, t.test_slot, c.id, c.chosen, c.reaction_ns / 1e9, c.toggles, c.chosen = t.first_shown, "
-        "t.status"
+        "t.status, c.correct"
         " FROM trial t LEFT JOIN choice c ON c.trial_id = t.id ORDER BY t.session_id, t.ordinal";
     return read_rows(reader, sql, trial_row, &(struct call){.user = user, .trial = each});
 }
@@ -194,6 +195,7 @@ static bool rating_row(sqlite3_stmt *s, const struct call *call)
         .value = real(s, 9),
         .scale_min = real(s, 10),
         .scale_max = real(s, 11),
+        .trial_kind = text(s, 12),
     };
     return call->rating(call->user, &row);
 }
@@ -203,7 +205,7 @@ bool store_read_ratings(struct store_reader *reader, store_rating_fn each, void 
     static const char sql[] =
         "SELECT r.id, coalesce(r.session_id, t.session_id) AS session, r.trial_id, t.ordinal, t.status, "
         "r.question,"
-        " t.block, t.scene, r.condition_id, r.value, r.scale_min, r.scale_max"
+        " t.block, t.scene, r.condition_id, r.value, r.scale_min, r.scale_max, t.kind"
         " FROM rating r LEFT JOIN trial t ON t.id = r.trial_id ORDER BY session, r.question, t.ordinal, r.id";
     return read_rows(reader, sql, rating_row, &(struct call){.user = user, .rating = each});
 }

@@ -282,6 +282,7 @@ CREATE TABLE exclusion (
     trial_id INTEGER REFERENCES trial (id),
     session_id INTEGER REFERENCES session (id),
     participant_id INTEGER REFERENCES participant (id),
+    -- the protocol's word or 'manual'; one that ends in ':rating_pair' takes ratings out and leaves a choice alone
     rule TEXT NOT NULL CHECK (rule <> ''),
     rule_set TEXT NOT NULL CHECK (rule_set IN ('planned', 'stricter', 'late')),
     reason TEXT NOT NULL,

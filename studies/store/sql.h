@@ -23,6 +23,9 @@ struct store {
     uint32_t busy_ms;
     dev_t device; // of the file as it was opened
     ino_t inode;
+    int rescued; // 0: no; -1: it failed; else the number of the copy (rescue.h), which is the file below
+    dev_t rescued_device;
+    ino_t rescued_inode;
     struct owner owner;
     pthread_mutex_t mutex;                    // held from sql_begin to sql_end: guards db and statements
     sqlite3_stmt *statements[SQL_STATEMENTS]; // owned, prepared at first use
@@ -34,6 +37,8 @@ struct store {
 void sql_say(struct store_error *error, const char *format, ...) __attribute__((format(printf, 2, 3)));
 // Turns an SQLite result code into ours, with a sentence that names the file.
 enum store_result sql_failure(struct store *store, int code, struct store_error *error);
+// Another connection to what the path now names, in place of the one there was.
+enum store_result sql_reconnect(struct store *store, struct store_error *error);
 // Whether the path still names the file that was opened.
 bool sql_file_there(const struct store *store);
 enum store_result sql_execute(struct store *store, const char *sql, struct store_error *error);

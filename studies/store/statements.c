@@ -1,9 +1,10 @@
 #include "studies/store/statements.h"
 
-// People excluded as a whole free their number.
+// People excluded as a whole free their number; those out by a stricter rule only are part of the analysis.
 #define HELD                                                                                                   \
     "WITH held (number) AS (SELECT number FROM participant AS p "                                              \
-    "WHERE NOT EXISTS (SELECT 1 FROM exclusion AS e WHERE e.participant_id = p.id)) "
+    "WHERE NOT EXISTS (SELECT 1 FROM exclusion AS e WHERE e.participant_id = p.id AND e.rule_set <> "          \
+    "'stricter')) "
 
 const char *const sql_statements[SQL_STATEMENTS] = {
     [SQL_BEGIN] = "BEGIN IMMEDIATE",
@@ -74,6 +75,11 @@ const char *const sql_statements[SQL_STATEMENTS] = {
     [SQL_INSERT_EXCLUSION] =
         "INSERT INTO exclusion (trial_id, session_id, participant_id, rule, rule_set, reason, "
         "\"by\", applied_at) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)",
+    [SQL_INSERT_NEW_EXCLUSION] =
+        "INSERT INTO exclusion (trial_id, session_id, participant_id, rule, rule_set, reason, "
+        "\"by\", applied_at) SELECT ?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8 WHERE NOT EXISTS "
+        "(SELECT 1 FROM exclusion WHERE rule = ?4 AND rule_set IN (?5, 'planned') AND "
+        "(trial_id = ?1 OR session_id = ?2 OR participant_id = ?3))",
     [SQL_SET_MEASURED_ERROR] = "INSERT INTO measured_error (condition_id, reference_id, scene, metric, value) "
                                "VALUES (?1, ?2, ?3, ?4, ?5) "
                                "ON CONFLICT (condition_id, reference_id, scene, metric) "

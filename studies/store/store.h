@@ -158,7 +158,8 @@ struct store_session_ids {
 };
 
 // The number of a participant: the one the code has in this file; else `wanted` where it is free; else, with
-// wanted 0, the first free one. A number is free when nobody has it who was not excluded as a person.
+// wanted 0, the first free one. A number is free when nobody has it who was not excluded as a person, as
+// planned or late.
 enum store_result store_participant_number(struct store *store, const char *code, int64_t wanted,
                                            int64_t *out_number, struct store_error *error);
 

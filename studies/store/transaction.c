@@ -1,4 +1,5 @@
 #include "studies/store/queue.h"
+#include "studies/store/rescue.h"
 #include "studies/store/rows.h"
 #include "studies/store/sql.h"
 
@@ -13,9 +14,17 @@ bool sql_file_there(const struct store *store)
 // SQLite goes on writing to a file that was removed or replaced under it, and nobody would ever see those rows.
 static enum store_result check_file(struct store *store, struct store_error *error)
 {
-    if (sql_file_there(store))
+    char suffix[RESCUE_SUFFIX];
+    if (sql_file_there(store) || rescue_returned(store, error))
         return STORE_OK;
-    sql_say(error, "%s: the file was removed or replaced while in use; put it back and go on", store->path);
+    if (rescue_copy(store, suffix))
+        sql_say(
+            error,
+            "%s: the file was removed or replaced while in use; all it held is in %s%s: give that its old name "
+            "and go on",
+            store->path, store->path, suffix);
+    else
+        sql_say(error, "%s: the file was removed or replaced while in use; put it back and go on", store->path);
     return STORE_FAILED;
 }
 

@@ -84,3 +84,22 @@ void formula_motion(float out[FORMULA_PX * 4], int t)
             out[3] = (float)(present > 0 ? 1 / present : 0);
         }
 }
+
+const char *formula_region_name(int region)
+{
+    static const char *const names[IMAGE_REGIONS] = {"0-5", "5-15", "15-30", "30+", "whole"};
+    return names[region];
+}
+
+uint64_t formula_ring_pixels(const struct image_rings *rings, uint32_t height, int region)
+{
+    uint64_t pixels = 0;
+    for (uint32_t y = 0; y < height; y++) {
+        uint32_t count;
+        const struct image_ring_run *runs = image_rings_runs(rings, y, &count);
+        for (uint32_t i = 0; i < count; i++)
+            if (region == IMAGE_WHOLE || runs[i].region == (uint32_t)region)
+                pixels += runs[i].end - runs[i].begin;
+    }
+    return pixels;
+}

@@ -3,7 +3,7 @@
 #ifndef TESTS_ANALYSIS_FORMULA_H
 #define TESTS_ANALYSIS_FORMULA_H
 
-#include "analysis/image/view.h"
+#include "analysis/image/rings.h"
 
 enum { FORMULA_WIDTH = 48, FORMULA_HEIGHT = 40, FORMULA_PX = FORMULA_WIDTH * FORMULA_HEIGHT };
 
@@ -21,5 +21,10 @@ struct image_pixels formula_noisy(struct formula_picture *out, int t, int amplit
 
 // The motion of frame t: a plane, a nearer box that moves over it, a background above.
 void formula_motion(float out[FORMULA_PX * 4], int t);
+
+// The reference's name of a region: "0-5", "5-15", "15-30", "30+", "whole".
+const char *formula_region_name(int region);
+// Pixels of a region in rings of `height` rows, counted run by run.
+uint64_t formula_ring_pixels(const struct image_rings *rings, uint32_t height, int region);
 
 #endif

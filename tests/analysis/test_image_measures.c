@@ -49,7 +49,7 @@ static void compare_rings(const char *measure, const struct image_ring_sum *sum,
 {
     for (int region = 0; region < IMAGE_REGIONS; region++) {
         char name[64];
-        snprintf(name, sizeof name, "%s.%s", measure, image_region_name(region));
+        snprintf(name, sizeof name, "%s.%s", measure, formula_region_name(region));
         compare(name, image_ring_mean(sum, region), most, worst);
     }
 }
@@ -74,12 +74,12 @@ static void psnr(void **state)
     for (int region = 0; region < IMAGE_REGIONS; region++) {
         struct image_error error = image_error_result(&sums.region[region]);
         char name[64];
-        snprintf(name, sizeof name, "pixels.%s", image_region_name(region));
-        assert_true((double)image_rings_pixels(rings, region) == expected(name));
-        assert_true(sums.region[region].values == 3 * image_rings_pixels(rings, region));
-        snprintf(name, sizeof name, "psnr.%s", image_region_name(region));
+        snprintf(name, sizeof name, "pixels.%s", formula_region_name(region));
+        assert_true((double)formula_ring_pixels(rings, FORMULA_HEIGHT, region) == expected(name));
+        assert_true(sums.region[region].values == 3 * formula_ring_pixels(rings, FORMULA_HEIGHT, region));
+        snprintf(name, sizeof name, "psnr.%s", formula_region_name(region));
         compare(name, error.psnr_db, 1e-11, &worst);
-        snprintf(name, sizeof name, "wpsnr.%s", image_region_name(region));
+        snprintf(name, sizeof name, "wpsnr.%s", formula_region_name(region));
         compare(name, error.weighted_psnr_db, 1e-11, &worst);
     }
     print_message("PSNR: within %.1e dB\n", worst);
@@ -180,7 +180,7 @@ static void flicker_excess(void **state)
     compare_rings("excess", &sum, 1e-5, &worst);
     for (int region = 0; region < IMAGE_REGIONS; region++) {
         char name[64];
-        snprintf(name, sizeof name, "excess.count.%s", image_region_name(region));
+        snprintf(name, sizeof name, "excess.count.%s", formula_region_name(region));
         assert_true((double)sum.count[region] == expected(name));
     }
     print_message("flicker excess: within %.1e levels\n", worst);

@@ -131,6 +131,33 @@ static void two_programs_never_share_a_study(void **state)
     assert_int_equal(command("fovstudy resume --db '%s/two.db'", folder)->status, 0);
 }
 
+static void a_person_is_forgotten(void **state)
+{
+    (void)state;
+    assert_int_equal(command(RUN("p-secret", ""), folder, folder, "forget.db")->status, 0);
+    assert_int_equal(command(RUN("q", ""), folder, folder, "forget.db")->status, 0);
+    const struct command_result *result = command("fovstudy forget --db '%s/forget.db' p-secret", folder);
+    assert_string_equal(result->err, "");
+    assert_int_equal(result->status, 0);
+    assert_non_null(strstr(result->out, "erased participant p-secret: 1 sessions, 3 trials, 3 answers"));
+    assert_int_equal(command("grep -c p-secret '%s/forget.db'", folder)->status, 1);
+    assert_string_equal(command("ls '%s' | grep -c forget.db", folder)->out, "1\n"); // no log is left beside it
+    assert_string_equal(
+        command("sqlite3 '%s/forget.db' 'SELECT code, number FROM participant; SELECT count(*) FROM "
+                "session; PRAGMA integrity_check'",
+                folder)
+            ->out,
+        "forgotten-1|1\nq|2\n1\nok\n");
+    expect(command("fovstudy forget --db '%s/forget.db' p-secret", folder), "there is no participant p-secret");
+    assert_int_equal(command("fovstudy forget p-secret")->status, 2);
+    assert_int_equal(command("fovstudy forget --db '%s/forget.db'", folder)->status, 2);
+    // The study goes on: the number is free, the tools read it.
+    assert_int_equal(command(RUN("r", ""), folder, folder, "forget.db")->status, 0);
+    assert_string_equal(
+        command("sqlite3 '%s/forget.db' \"SELECT number FROM participant WHERE code = 'r'\"", folder)->out,
+        "1\n");
+}
+
 static void resume_refuses_what_differs(void **state)
 {
     (void)state;
@@ -291,6 +318,7 @@ int main(void)
         cmocka_unit_test(people_and_simulated_observers_never_share_a_file),
         cmocka_unit_test(a_newer_study_is_refused),
         cmocka_unit_test(two_programs_never_share_a_study),
+        cmocka_unit_test(a_person_is_forgotten),
         cmocka_unit_test(resume_refuses_what_differs),
         cmocka_unit_test(a_full_disk_loses_no_acknowledged_answer),
         cmocka_unit_test(events_on_a_full_disk_are_named),

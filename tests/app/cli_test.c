@@ -67,6 +67,13 @@ static void wrong_usage_is_exit_2(void **state)
         {"fovstudy run a.yaml --db x.db --participant p --attribute age", "age"},
         {"fovstudy run a.yaml --db x.db --participant p --display headless", "--observer"},
         {"fovstudy run a.yaml --db x.db --participant p --display none", "--observer"},
+        {"fovstudy strip --scene town --out x.png", "--modes"},
+        {"fovstudy strip --modes vrs regular --scene town", "--out"},
+        {"fovstudy strip --modes regular --out x.png", "--scene"},
+        {"fovstudy strip --modes regular warped --scene town --out x.png", "warped"},
+        {"fovstudy strip --modes regular --scene town --out x.png word", "word"},
+        {"fovstudy strip --modes vrs --scene town --out x.png --size 8x8", "8x8"},
+        {"fovstudy strip --modes vrs vrs vrs vrs vrs vrs vrs vrs vrs --scene town --out x.png", "more than 8"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
         expect(command("%s", cases[i].line), 2, cases[i].about);
@@ -76,8 +83,9 @@ static void help_is_exit_0(void **state)
 {
     (void)state;
     static const char *const lines[] = {
-        "fovstudy --help",       "fovstudy --version",     "fovstudy run --help",    "fovstudy check --help",
-        "fovstudy modes --help", "fovstudy scenes --help", "fovstudy render --help", "fovstudy devices --help"};
+        "fovstudy --help",         "fovstudy --version",     "fovstudy run --help",    "fovstudy check --help",
+        "fovstudy modes --help",   "fovstudy scenes --help", "fovstudy render --help", "fovstudy strip --help",
+        "fovstudy devices --help", "fovstudy schema --help"};
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
         const struct command_result *result = command("%s", lines[i]);
         assert_int_equal(result->status, 0);
@@ -88,7 +96,7 @@ static void help_is_exit_0(void **state)
 static void tables_are_valid_json(void **state)
 {
     (void)state;
-    static const char *const lines[] = {"modes --json", "scenes --json",
+    static const char *const lines[] = {"modes --json", "scenes --json", "schema",
                                         "check '" SOURCE_DIR "/studies/protocols/calibration.yaml' --json"};
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
         const struct command_result *result =
@@ -99,6 +107,17 @@ static void tables_are_valid_json(void **state)
     }
     assert_non_null(strstr(command("fovstudy modes")->out, "epsilon"));
     assert_non_null(strstr(command("fovstudy scenes")->out, "triangles"));
+}
+
+static void the_reference_page_is_up_to_date(void **state)
+{
+    (void)state;
+    const struct command_result *result =
+        command("fovstudy schema --reference | diff '" SOURCE_DIR "/docs/protocol.md' -");
+    if (result->status != 0)
+        fail_msg("docs/protocol.md is stale; run: fovstudy schema --reference > docs/protocol.md\n%.2000s",
+                 result->out);
+    expect(command("fovstudy schema now"), 2, "now");
 }
 
 // The same participant gets the same table, another one another, and all of them nine decisions and two
@@ -225,6 +244,7 @@ int main(void)
         cmocka_unit_test(wrong_usage_is_exit_2),
         cmocka_unit_test(help_is_exit_0),
         cmocka_unit_test(tables_are_valid_json),
+        cmocka_unit_test(the_reference_page_is_up_to_date),
         cmocka_unit_test(check_prints_a_participants_trials),
         cmocka_unit_test(protocol_mistakes_have_their_place),
         cmocka_unit_test(run_refuses_before_it_writes),

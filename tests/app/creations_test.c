@@ -34,8 +34,10 @@ static const char protocol[] =
     "instructions: Choose.\n"
     "consent: {version: \"1\", text: Yes?}\n"
     "blocks:\n"
-    "  - {name: one, kind: toggle, options: [warped, regular], settings: {ssao: on, taa: on}}\n"
-    "  - {name: two, kind: toggle, options: [coarse, warped], settings: {moving_objects: off}}\n"
+    "  - {name: one, kind: toggle, options: [warped, regular],\n"
+    "     settings: {ssao: on, taa: on, fixation: moving, foveate: target}}\n"
+    "  - {name: two, kind: toggle, options: [coarse, warped], settings: {moving_objects: off, fixation: "
+    "cross}}\n"
     "  - {name: three, kind: toggle, options: [coarse, regular], settings: {ssao: on}}\n"
     "  - {name: four, kind: rate, options: [warped], settings: {question: quality, taa: on}}\n";
 

@@ -265,6 +265,25 @@ static void wrong_sources_get_a_sentence(void **state)
     }
 }
 
+// Both eyes' directions meet in the point.
+static void a_fovea_on_a_point_converges(void **state)
+{
+    (void)state;
+    const struct pose head = {.orientation = {0, 0, 0, 1}};
+    const struct dvec3 points[] = {{0, 0, -0.5}, {0.3, -0.2, -1}, {-4, 6, -30}};
+    for (size_t i = 0; i < sizeof points / sizeof *points; i++) {
+        struct fovea_use use;
+        fovea_on(points[i], 0.063, &use);
+        assert_false(use.lost);
+        assert_true(use.x_deg[EYE_LEFT] > use.x_deg[EYE_RIGHT]); // inwards
+        for (int eye = 0; eye < EYES; eye++) {
+            const struct dvec3 from = viewing_eye_pose(&head, eye, 0.063).position;
+            const struct dvec3 way = dvec3_sub(points[i], from);
+            assert_true(geometry_angle_deg(viewing_direction(use.x_deg[eye], use.y_deg[eye]), way) < 1e-9);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -280,6 +299,7 @@ int main(void)
         cmocka_unit_test(a_gaze_that_was_lost_comes_back_once),
         cmocka_unit_test(the_mouse_points_through_the_projection),
         cmocka_unit_test(wrong_sources_get_a_sentence),
+        cmocka_unit_test(a_fovea_on_a_point_converges),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

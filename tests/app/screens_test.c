@@ -104,6 +104,22 @@ static void every_waiting_screen_says_what_to_do(void **state)
     }
 }
 
+// Over whatever screen there is, and nothing else with it.
+static void waiting_for_the_disk_says_so(void **state)
+{
+    (void)state;
+    struct screen screen;
+    struct screen_state waiting = {.going_to = PLAN_SLOT_A, .wait = true};
+    for (int kind = MACHINE_CONSENT; kind <= MACHINE_END; kind++) {
+        struct machine_view view = {.screen = (enum machine_screen)kind, .fade = 1};
+        screen_of(&view, &waiting, &screen);
+        assert_true(screen.shown);
+        assert_string_equal(screen.title, "Please wait ...");
+        assert_string_equal(screen.hint, "");
+        assert_int_equal(screen.scale_max, 0);
+    }
+}
+
 static void the_scale_comes_from_the_question(void **state)
 {
     (void)state;
@@ -124,6 +140,7 @@ int main(void)
         cmocka_unit_test(no_screen_tells_the_options_apart),
         cmocka_unit_test(the_letter_is_there_only_in_full_gray),
         cmocka_unit_test(every_waiting_screen_says_what_to_do),
+        cmocka_unit_test(waiting_for_the_disk_says_so),
         cmocka_unit_test(the_scale_comes_from_the_question),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

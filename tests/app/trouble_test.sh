@@ -130,6 +130,18 @@ mv kept.db other.db
 goes_on
 stop 1
 
+# A file that is deleted is kept in a copy, and the session goes on in that.
+start deleted
+before=$(answers)
+rm deleted.db
+says 'all it held is in .*deleted.db.rescued1'
+stands_still
+[ "$(sqlite3 deleted.db.rescued1 'SELECT count(*) FROM choice')" -ge "$(answers)" ] || fail "the copy lacks answers"
+[ -e deleted.db ] && fail "a file was made in its place"
+mv deleted.db.rescued1 deleted.db
+goes_on
+stop 1
+
 # Patience ends, and the session can be resumed.
 start ends --patience 0.5
 mv ends.db away.db

@@ -74,6 +74,23 @@ static void draw_a_trial(const struct room *r, struct renderer_option *const *op
     }
 }
 
+// A target and spheres in other places each time, and none.
+static void show_marks(const struct room *r, struct renderer_option *option)
+{
+    struct renderer_mark marks[RENDERER_MARKS];
+    for (uint32_t count = 0; count <= RENDERER_MARKS; count += 20) {
+        for (uint32_t i = 0; i < count; i++)
+            marks[i] =
+                (struct renderer_mark){.kind = i % 2 ? RENDERER_MARK_BALL : RENDERER_MARK_CROSS,
+                                       .place = {{i, 2, {{0.2, 0}, {0, -0.2}}}, {i, 3, {{0.2, 0}, {0, -0.2}}}},
+                                       .opacity = {1, 1}};
+        assert_true(renderer_set_marks(r->stage.renderer, marks, count));
+        assert_true(renderer_show(r->stage.renderer, option, 0.5));
+        assert_true(renderer_show(r->stage.renderer, NULL, 1));
+    }
+    assert_true(renderer_set_marks(r->stage.renderer, NULL, 0));
+}
+
 // Texts of several sizes over gray, as between two options; none is larger than an eye.
 static void show_texts(const struct room *r)
 {
@@ -112,6 +129,7 @@ static void a_trial_makes_nothing(void **state)
         for (int round = 0; round < ROUNDS; round++) {
             draw_a_trial(r, options, &number);
             show_texts(r);
+            show_marks(r, options[0]);
         }
         const struct creations made = creations_end();
         for (int i = 0; i < OPTIONS; i++)

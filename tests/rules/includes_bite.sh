@@ -21,6 +21,9 @@ try analysis/stats/a.c '"analysis/image/error.h"' 1
 try app/session/a.c '"renderer/gpu/gpu.h"' 1
 try app/session/a.c '<sqlite3.h>' 1
 try app/fovbench/a.c '"analysis/stats/binomial.h"' 1
+try app/session/a.c '"analysis/stats/power.h"' 1
+try app/fovstudy/a.c '"analysis/stats/power.h"' 0
+try app/fovstudy/a.c '"analysis/report/report.h"' 1
 try app/fovbench/a.c '"analysis/stats/quantile.h"' 0
 try renderer/passes/shade/shade.comp '"renderer/passes/cull/x.glsl"' 1
 try elsewhere/a.c '"stimuli/scene.h"' 1

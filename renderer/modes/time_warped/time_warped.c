@@ -155,6 +155,15 @@ static bool create_drawing(struct mode_state *s, const struct mode_setup *setup)
     return redraw_init(&s->redraw, &redraw) && deferred_init(&s->deferred, &deferred);
 }
 
+static struct pyramid_confidence confidence_of(const double *values)
+{
+    return (struct pyramid_confidence){.epsilon = (float)values[EPSILON],
+                                       .fovea_deg = (float)values[FOVEA_DEG],
+                                       .periphery_deg = (float)values[PERIPHERY_DEG],
+                                       .hole_decay = (float)values[HOLE_DECAY],
+                                       .dynamic_decay = (float)values[DYNAMIC_DECAY]};
+}
+
 static bool create_warping(struct mode_state *s, const struct mode_setup *setup)
 {
     const struct reproject_desc reproject = {.gpu = s->gpu,
@@ -174,12 +183,10 @@ static bool create_warping(struct mode_state *s, const struct mode_setup *setup)
                                          .position = {s->position[0].view, s->position[1].view},
                                          .redraw_map = s->redraw_map.view,
                                          .moving = s->marks,
+                                         .all_levels = setup->settings.adjustable,
+                                         .may_move = setup->settings.adjustable && s->has_movers,
                                          .tiles = &s->reproject.hole_tiles,
-                                         .confidence = {.epsilon = s->epsilon,
-                                                        .fovea_deg = s->fovea_deg,
-                                                        .periphery_deg = (float)setup->values[PERIPHERY_DEG],
-                                                        .hole_decay = (float)setup->values[HOLE_DECAY],
-                                                        .dynamic_decay = (float)setup->values[DYNAMIC_DECAY]}};
+                                         .confidence = confidence_of(setup->values)};
     return reproject_init(&s->reproject, &reproject) && pyramid_init(&s->pyramid, &pyramid);
 }
 
@@ -196,8 +203,6 @@ static bool create_joining(struct mode_state *s, const struct mode_setup *setup)
                                        .join = s->objects_regular};
     const struct compose_desc compose = {.gpu = s->gpu,
                                          .frame = setup->frame,
-                                         .width = setup->width,
-                                         .height = setup->height,
                                          .depth = s->deferred.gbuffer.depth.view,
                                          .id = s->deferred.gbuffer.id.view,
                                          .redraw_map = s->redraw_map.view,
@@ -224,16 +229,29 @@ static void explain(const struct mode_state *s, const struct mode_setup *setup)
                                         : "whose boxes are redrawn in turn");
 }
 
+static void take_values(struct mode_state *s, const double *values)
+{
+    s->epsilon = (float)values[EPSILON];
+    s->fovea_deg = (float)values[FOVEA_DEG];
+    s->marks = s->has_movers && s->epsilon > 0;
+}
+
+static bool set(struct mode_state *s, const double *values)
+{
+    const struct pyramid_confidence confidence = confidence_of(values);
+    take_values(s, values);
+    pyramid_set(&s->pyramid, &confidence, s->marks);
+    return true;
+}
+
 static struct mode_state *create(const struct mode_setup *setup)
 {
     struct mode_state *s = calloc(1, sizeof *s);
     if (!s)
         return NULL;
     s->gpu = setup->gpu;
-    s->epsilon = (float)setup->values[EPSILON];
-    s->fovea_deg = (float)setup->values[FOVEA_DEG];
     s->has_movers = setup->scene->moving_object_count > 0;
-    s->marks = s->has_movers && s->epsilon > 0;
+    take_values(s, setup->values);
     s->objects_regular = setup->values[DYNAMIC_OBJECTS] == OBJECTS_REGULAR;
     if (!create_images(s, setup) || !create_drawing(s, setup) || !create_warping(s, setup) ||
         !create_joining(s, setup)) {
@@ -331,5 +349,6 @@ const struct mode mode_time_warped = {
     .agree = agree,
     .create = create,
     .record = record,
+    .set = set,
     .destroy = destroy,
 };

@@ -137,6 +137,13 @@ static struct mode_state *create(const struct mode_setup *setup)
     return s;
 }
 
+static bool set(struct mode_state *s, const double *values)
+{
+    s->deferred.shade.inner_deg = s->forward.inner_deg = (float)values[INNER_DEG];
+    s->deferred.shade.outer_deg = s->forward.outer_deg = (float)values[OUTER_DEG];
+    return true;
+}
+
 static void shade_forward(struct mode_state *s, struct gpu_frame *f)
 {
     forward_rates(&s->forward, gpu_timer_begin(f, "shading rates"));
@@ -175,5 +182,6 @@ const struct mode mode_vrs = {
     .agree = agree,
     .create = create,
     .record = record,
+    .set = set,
     .destroy = destroy,
 };

@@ -1,7 +1,5 @@
 #include "renderer/passes/compose/compose.h"
 
-#include "renderer/shared/shared.h"
-
 #include "compose.comp.h"
 #include "compose.comp_id.h"
 
@@ -20,17 +18,14 @@ static const struct gpu_binding all_bindings[BINDINGS] = {
 
 bool compose_init(struct compose *c, const struct compose_desc *desc)
 {
-    *c = (struct compose){.gpu = desc->gpu, .width = desc->width, .height = desc->height, .tiles = desc->tiles};
+    *c = (struct compose){.gpu = desc->gpu, .tiles = desc->tiles};
     struct gpu_binding bindings[BINDINGS];
     memcpy(bindings, all_bindings, sizeof bindings);
     bindings[ID].absent = !desc->id;
     const struct gpu_code code = desc->id ? (struct gpu_code){compose_comp_id, sizeof compose_comp_id}
                                           : (struct gpu_code){compose_comp, sizeof compose_comp};
-    const struct gpu_kernel_desc kernel = {.name = "compose",
-                                           .code = code,
-                                           .bindings = bindings,
-                                           .binding_count = countof(bindings),
-                                           .push_bytes = sizeof(uint32_t)};
+    const struct gpu_kernel_desc kernel = {
+        .name = "compose", .code = code, .bindings = bindings, .binding_count = countof(bindings)};
     c->sampler = gpu_sampler_create_plain(c->gpu);
     if (!c->sampler || !gpu_kernel_create(c->gpu, &kernel, &c->kernel))
         return false;
@@ -41,7 +36,7 @@ bool compose_init(struct compose *c, const struct compose_desc *desc)
             {.view = desc->redraw_map},
             {.view = desc->position[target]},
             {.view = desc->id, .sampler = c->sampler, .layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL},
-            {.buffer = desc->tiles ? desc->tiles : desc->frame}, // never read without a list
+            {.buffer = desc->tiles},
         };
         c->sets[target] = gpu_set_create(c->gpu, c->kernel.set_layout, bindings, resources, countof(bindings));
         if (!c->sets[target])
@@ -61,15 +56,7 @@ void compose_finish(struct compose *c)
     *c = (struct compose){0};
 }
 
-void compose_record(const struct compose *c, VkCommandBuffer cmd, uint32_t target)
-{
-    const uint32_t listed = 0;
-    gpu_dispatch(cmd, &c->kernel, c->sets[target], &listed, sizeof listed,
-                 (c->width + SHARED_TILE - 1) / SHARED_TILE, (c->height + SHARED_TILE - 1) / SHARED_TILE, 2);
-}
-
 void compose_record_tiles(const struct compose *c, VkCommandBuffer cmd, uint32_t target)
 {
-    const uint32_t listed = 1;
-    gpu_dispatch_indirect(cmd, &c->kernel, c->sets[target], &listed, sizeof listed, c->tiles);
+    gpu_dispatch_indirect(cmd, &c->kernel, c->sets[target], NULL, 0, c->tiles);
 }

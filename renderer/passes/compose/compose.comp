@@ -16,17 +16,13 @@ layout(binding = 3, rgba32f) uniform writeonly image2DArray position_image;
 layout(binding = 4) uniform usampler2DArray id_image;
 #endif
 layout(scalar, binding = 5) readonly buffer Tiles { uint tiles[]; };
-layout(push_constant) uniform Push { uint listed; } push;
 
 void main()
 {
-    ivec3 pixel = ivec3(gl_GlobalInvocationID);
-    if (push.listed != 0u) {
-        uint index = TILE_INDEX;
-        if (index >= tiles[SHARED_TILES_FIRST - 1])
-            return;
-        pixel = tile_pixel(tiles[SHARED_TILES_FIRST + index], gl_LocalInvocationID.xy);
-    }
+    uint index = TILE_INDEX;
+    if (index >= tiles[SHARED_TILES_FIRST - 1])
+        return;
+    ivec3 pixel = tile_pixel(tiles[SHARED_TILES_FIRST + index], gl_LocalInvocationID.xy);
     if (pixel.x >= int(frame.width) || pixel.y >= int(frame.height) || imageLoad(redraw_map, pixel).x == 0u)
         return;
     vec3 ray = view_ray(EYE(uint(pixel.z), tangents), vec2(frame.width, frame.height), vec2(pixel.xy) + 0.5 - frame.jitter);

@@ -8,7 +8,6 @@
 
 struct compose {
     struct gpu *gpu;
-    uint32_t width, height;
     struct gpu_kernel kernel;
     VkSampler sampler;
     VkDescriptorSet sets[2]; // by target
@@ -18,18 +17,16 @@ struct compose {
 struct compose_desc {
     struct gpu *gpu;
     const struct gpu_buffer *frame;
-    uint32_t width, height;
     VkImageView depth;              // of the G-buffer, DEPTH_READ_ONLY_OPTIMAL
     VkImageView id;                 // of the G-buffer, SHADER_READ_ONLY_OPTIMAL; null: nothing moves
     VkImageView redraw_map;         // r8 uint, GENERAL
     VkImageView position[2];        // rgba32f, GENERAL
-    const struct gpu_buffer *tiles; // of the redraw map (tiles.glsl); NULL: compose_record_tiles is not used
+    const struct gpu_buffer *tiles; // of the redraw map (tiles.glsl)
 };
 
 bool compose_init(struct compose *compose, const struct compose_desc *desc);
 void compose_finish(struct compose *compose);
-void compose_record(const struct compose *compose, VkCommandBuffer cmd, uint32_t target);
-// The same pixels from the list of tiles, which must be visible to DRAW_INDIRECT and COMPUTE_SHADER.
+// The list of tiles must be visible to DRAW_INDIRECT and COMPUTE_SHADER.
 void compose_record_tiles(const struct compose *compose, VkCommandBuffer cmd, uint32_t target);
 
 #endif

@@ -19,6 +19,13 @@ layout(binding = 5, r8ui) uniform uimage2DArray redraw_map;
 layout(scalar, binding = 6) readonly buffer Tiles { uint tiles[]; };
 #include "renderer/passes/pyramid/confidence.glsl"
 
+// Texels of level m of a pyramid as deep as is asked for; its image may be made deeper, and so larger.
+ivec2 level_size(int m)
+{
+    ivec2 whole = ivec2(frame.width, frame.height) + (1 << push.levels) - 1;
+    return (whole >> push.levels << push.levels) >> m;
+}
+
 // Level m around a pixel: the four nearest texels, weighted bilinearly, of those with a value and of the kind (surface
 // or background) of the texel over the pixel itself; alpha is their contrast confidence, 0 where that texel has
 // nothing.
@@ -30,7 +37,7 @@ vec4 level_value(ivec3 pixel, int m, out float depth)
     if (texelFetch(pyramid, over, mip).a == 0.0)
         return vec4(0.0);
     vec2 at = (vec2(pixel.xy) + 0.5) / float(1 << m) - 0.5;
-    ivec2 corner = ivec2(floor(at)), last = textureSize(pyramid, mip).xy - 1;
+    ivec2 corner = ivec2(floor(at)), last = level_size(m) - 1;
     vec2 f = at - vec2(corner);
     vec4 sum = vec4(0.0);
     float weights = 0.0;

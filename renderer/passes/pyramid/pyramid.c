@@ -36,11 +36,17 @@ static const struct gpu_binding fill_bindings[] = {
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},         // tiles
 };
 
-uint32_t pyramid_levels(uint32_t width, uint32_t height, float epsilon, float hole_decay)
+static uint32_t most_levels(uint32_t width, uint32_t height)
 {
     uint32_t levels = 1;
     for (uint32_t side = width > height ? width : height; levels < PYRAMID_LEVELS && 1u << levels < side;)
         levels++;
+    return levels;
+}
+
+uint32_t pyramid_levels(uint32_t width, uint32_t height, float epsilon, float hole_decay)
+{
+    const uint32_t levels = most_levels(width, height);
     float confidence = 1;
     for (uint32_t m = 1; m <= levels; m++) {
         confidence *= hole_decay;
@@ -58,7 +64,7 @@ static uint32_t padded(uint32_t size, uint32_t levels)
 static bool create_sets(struct pyramid *p, const struct pyramid_desc *desc)
 {
     for (uint32_t target = 0; target < 2; target++) {
-        for (uint32_t level = 0; level < p->confidence.levels; level++) {
+        for (uint32_t level = 0; level < p->made_levels; level++) {
             const uint32_t below = level ? level - 1 : 0;
             const struct gpu_resource resources[] = {
                 {.buffer = desc->frame},          {.view = desc->colour[target]},
@@ -83,7 +89,7 @@ static bool create_sets(struct pyramid *p, const struct pyramid_desc *desc)
         const struct gpu_resource decide[] = {
             {.buffer = desc->frame}, {.view = desc->position[target]}, {.view = desc->redraw_map}};
         p->decide_sets[target] =
-            gpu_set_create(p->gpu, p->decide.set_layout, decide_bindings, decide, countof(decide));
+            gpu_set_create(p->gpu, p->decide[p->moving].set_layout, decide_bindings, decide, countof(decide));
         p->fill_sets[target] =
             gpu_set_create(p->gpu, p->fill.set_layout, fill_bindings, resources, countof(resources));
         if (!p->fill_sets[target] || !p->decide_sets[target])
@@ -94,7 +100,7 @@ static bool create_sets(struct pyramid *p, const struct pyramid_desc *desc)
 
 static bool create_images(struct pyramid *p)
 {
-    const uint32_t levels = p->confidence.levels;
+    const uint32_t levels = p->made_levels;
     struct gpu_image_desc image = {.name = "pull-push pyramid",
                                    .format = VK_FORMAT_R16G16B16A16_SFLOAT,
                                    .width = padded(p->width, levels) / 2,
@@ -118,26 +124,39 @@ static bool create_images(struct pyramid *p)
     return true;
 }
 
+// Both kinds where either may be asked for; their sets are of the same layout.
+static bool create_decide(struct pyramid *p, bool both)
+{
+    const struct gpu_code codes[2] = {{decide_comp, sizeof decide_comp},
+                                      {decide_comp_moving, sizeof decide_comp_moving}};
+    for (int moving = 0; moving < 2; moving++) {
+        const struct gpu_kernel_desc decide = {.name = "decide",
+                                               .code = codes[moving],
+                                               .bindings = decide_bindings,
+                                               .binding_count = countof(decide_bindings),
+                                               .push_bytes = sizeof(struct pyramid_confidence)};
+        if ((both || p->moving == (moving == 1)) && !gpu_kernel_create(p->gpu, &decide, &p->decide[moving]))
+            return false;
+    }
+    return true;
+}
+
+void pyramid_set(struct pyramid *p, const struct pyramid_confidence *confidence, bool moving)
+{
+    p->confidence = *confidence;
+    p->confidence.levels = pyramid_levels(p->width, p->height, confidence->epsilon, confidence->hole_decay);
+    p->moving = moving;
+}
+
 bool pyramid_init(struct pyramid *p, const struct pyramid_desc *desc)
 {
-    *p = (struct pyramid){.gpu = desc->gpu,
-                          .width = desc->width,
-                          .height = desc->height,
-                          .confidence = desc->confidence,
-                          .tiles = desc->tiles};
-    p->confidence.levels =
-        pyramid_levels(p->width, p->height, desc->confidence.epsilon, desc->confidence.hole_decay);
+    *p = (struct pyramid){.gpu = desc->gpu, .width = desc->width, .height = desc->height, .tiles = desc->tiles};
+    pyramid_set(p, &desc->confidence, desc->moving);
+    p->made_levels = desc->all_levels ? most_levels(p->width, p->height) : p->confidence.levels;
     struct gpu_kernel_desc pull = {.name = "pull first",
                                    .code = {pull_comp_first, sizeof pull_comp_first},
                                    .bindings = pull_bindings,
                                    .binding_count = countof(pull_bindings)};
-    const struct gpu_kernel_desc decide = {
-        .name = "decide",
-        .code = desc->moving ? (struct gpu_code){decide_comp_moving, sizeof decide_comp_moving}
-                             : (struct gpu_code){decide_comp, sizeof decide_comp},
-        .bindings = decide_bindings,
-        .binding_count = countof(decide_bindings),
-        .push_bytes = sizeof(struct pyramid_confidence)};
     const struct gpu_kernel_desc fill = {.name = "fill",
                                          .code = {fill_comp, sizeof fill_comp},
                                          .bindings = fill_bindings,
@@ -147,7 +166,7 @@ bool pyramid_init(struct pyramid *p, const struct pyramid_desc *desc)
         return false;
     pull.name = "pull";
     pull.code = (struct gpu_code){pull_comp, sizeof pull_comp};
-    if (!gpu_kernel_create(p->gpu, &pull, &p->pull) || !gpu_kernel_create(p->gpu, &decide, &p->decide) ||
+    if (!gpu_kernel_create(p->gpu, &pull, &p->pull) || !create_decide(p, desc->may_move) ||
         !gpu_kernel_create(p->gpu, &fill, &p->fill))
         return false;
     p->sampler = gpu_sampler_create_plain(p->gpu);
@@ -171,7 +190,8 @@ void pyramid_finish(struct pyramid *p)
     vkDestroySampler(p->gpu->device, p->sampler, NULL);
     gpu_kernel_destroy(p->gpu, &p->pull_first);
     gpu_kernel_destroy(p->gpu, &p->pull);
-    gpu_kernel_destroy(p->gpu, &p->decide);
+    gpu_kernel_destroy(p->gpu, &p->decide[0]);
+    gpu_kernel_destroy(p->gpu, &p->decide[1]);
     gpu_kernel_destroy(p->gpu, &p->fill);
     gpu_image_destroy(p->gpu, &p->image);
     gpu_image_destroy(p->gpu, &p->depth);
@@ -189,7 +209,8 @@ void pyramid_pull(const struct pyramid *p, VkCommandBuffer cmd, uint32_t target)
     gpu_image_layout(cmd, &p->image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
     gpu_image_layout(cmd, &p->depth, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
     for (uint32_t level = 0; level < p->confidence.levels; level++) {
-        const uint32_t width = p->image.width >> level, height = p->image.height >> level;
+        const uint32_t width = padded(p->width, p->confidence.levels) >> (level + 1),
+                       height = padded(p->height, p->confidence.levels) >> (level + 1);
         gpu_dispatch(cmd, level ? &p->pull : &p->pull_first, p->pull_sets[target][level], NULL, 0,
                      (width + SHARED_TILE - 1) / SHARED_TILE, (height + SHARED_TILE - 1) / SHARED_TILE, 2);
         gpu_barrier(cmd, compute, compute);
@@ -214,7 +235,7 @@ void pyramid_fill(const struct pyramid *p, VkCommandBuffer cmd, uint32_t target,
     push.turn = turn;
     push.trusted_cosine = (float)trusted_cosine(&push);
     push.listed = p->tiles != NULL;
-    gpu_dispatch(cmd, &p->decide, p->decide_sets[target], &push, sizeof push, x, y, 2);
+    gpu_dispatch(cmd, &p->decide[p->moving], p->decide_sets[target], &push, sizeof push, x, y, 2);
     gpu_barrier(cmd, compute, compute);
     if (p->tiles)
         gpu_dispatch_indirect(cmd, &p->fill, p->fill_sets[target], &push, sizeof push, p->tiles);

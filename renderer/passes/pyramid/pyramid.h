@@ -16,7 +16,7 @@ struct pyramid_confidence {
     float fovea_deg, periphery_deg; // phi_F, phi_0
     float hole_decay;               // A
     float dynamic_decay;            // D
-    uint32_t levels;                // set by pyramid_init
+    uint32_t levels;                // set by pyramid_init and pyramid_set
     uint32_t turn;                  // set by pyramid_fill
     float trusted_cosine;           // set by pyramid_fill
     uint32_t listed;                // set by pyramid_fill
@@ -26,11 +26,13 @@ struct pyramid {
     struct gpu *gpu;
     uint32_t width, height;
     struct pyramid_confidence confidence;
+    uint32_t made_levels; // of the images: those of the confidence, or all that pyramid_set may need
+    bool moving;
     struct gpu_image image; // level m of the pyramid is its mip m - 1
     struct gpu_image depth; // its farthest depths, reversed; 0: the background, or nothing
     VkImageView level_views[PYRAMID_LEVELS], depth_views[PYRAMID_LEVELS];
     VkSampler sampler;
-    struct gpu_kernel pull_first, pull, decide, fill;
+    struct gpu_kernel pull_first, pull, decide[2], fill; // decide[1]: objects move
     const struct gpu_buffer *tiles;
     VkDescriptorSet pull_sets[2][PYRAMID_LEVELS]; // by target, then by level
     VkDescriptorSet decide_sets[2], fill_sets[2];
@@ -43,12 +45,16 @@ struct pyramid_desc {
     VkImageView colour[2], position[2]; // rgba8, rgba32f
     VkImageView redraw_map;             // r8 uint, written
     bool moving;                        // objects move: what the map already holds is redrawn too
+    // Made for pyramid_set: with levels for any confidence, with kernels for both kinds of `moving`.
+    bool all_levels, may_move;
     const struct gpu_buffer
         *tiles; // that hold holes (tiles.glsl), visible to DRAW_INDIRECT; NULL: all are looked at
     struct pyramid_confidence confidence;
 };
 
 bool pyramid_init(struct pyramid *pyramid, const struct pyramid_desc *desc);
+// Other numbers from the next frame on; of a pyramid made for it.
+void pyramid_set(struct pyramid *pyramid, const struct pyramid_confidence *confidence, bool moving);
 void pyramid_finish(struct pyramid *pyramid);
 uint64_t pyramid_memory(const struct pyramid *pyramid);
 // The deepest level that can matter: beyond it A^m < epsilon, and the hole is redrawn whatever its colour.

@@ -7,13 +7,14 @@
 
 #include <string.h>
 
-enum { COLOUR = 2, BINDINGS };
+enum { COLOUR = 3, BINDINGS };
 
 // The colour is absent for gray.
 static void fill_bindings(struct gpu_binding out[BINDINGS], bool coloured)
 {
     out[0] = (struct gpu_binding){.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE};          // screen
     out[1] = (struct gpu_binding){.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}; // overlay
+    out[2] = (struct gpu_binding){.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER};         // marks
     out[COLOUR] = (struct gpu_binding){.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, .absent = !coloured};
 }
 
@@ -22,6 +23,7 @@ struct screen_push {
     int32_t left[2], top[2];
     uint32_t overlay_width, overlay_height; // 0: none
     float fade;
+    uint32_t mark_count;
 };
 
 static bool create_overlay(struct screen *s, uint32_t width, uint32_t height)
@@ -59,7 +61,10 @@ bool screen_init(struct screen *s, struct gpu *gpu, uint32_t width, uint32_t hei
                                      .binding_count = BINDINGS,
                                      .push_bytes = sizeof(struct screen_push)};
     s->sampler = gpu_sampler_create_plain(gpu);
-    if (!s->sampler || !gpu_image_create(gpu, &image, &s->image) || !gpu_kernel_create(gpu, &kernel, &s->gray))
+    if (!s->sampler || !gpu_image_create(gpu, &image, &s->image) ||
+        !gpu_buffer_create(gpu, "marks", SCREEN_MARKS * sizeof(struct shared_mark),
+                           VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, GPU_HOST, &s->marks) ||
+        !gpu_kernel_create(gpu, &kernel, &s->gray))
         return false;
     fill_bindings(bindings, true);
     kernel.code = (struct gpu_code){screen_comp_colour, sizeof screen_comp_colour};
@@ -74,6 +79,7 @@ void screen_finish(struct screen *s)
     gpu_kernel_destroy(s->gpu, &s->gray);
     gpu_kernel_destroy(s->gpu, &s->coloured);
     gpu_image_destroy(s->gpu, &s->image);
+    gpu_buffer_destroy(s->gpu, &s->marks);
     destroy_overlay(s);
     vkDestroySampler(s->gpu->device, s->sampler, NULL);
     *s = (struct screen){0};
@@ -114,6 +120,13 @@ bool screen_set_overlay(struct screen *s, const uint8_t *rgba, uint32_t width, u
     return true;
 }
 
+void screen_set_marks(struct screen *s, const struct shared_mark *marks, uint32_t count)
+{
+    s->mark_count = count < SCREEN_MARKS ? count : SCREEN_MARKS;
+    if (s->mark_count) // frames are waited for, so none reads them now
+        memcpy(s->marks.mapped, marks, s->mark_count * sizeof *marks);
+}
+
 static void bring_overlay(struct screen *s, VkCommandBuffer cmd)
 {
     if (!s->overlay_used)
@@ -134,6 +147,7 @@ void screen_record(struct screen *s, VkCommandBuffer cmd, const struct gpu_image
     const struct gpu_resource resources[] = {
         {.view = s->image.view},
         {.view = s->overlay.view, .sampler = s->sampler},
+        {.buffer = &s->marks},
         {.view = colour ? colour->view : VK_NULL_HANDLE},
     };
     struct gpu_binding bindings[BINDINGS];
@@ -146,8 +160,14 @@ void screen_record(struct screen *s, VkCommandBuffer cmd, const struct gpu_image
     bring_overlay(s, cmd);
     gpu_barrier(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
     const struct screen_push push = {
-        s->width,          s->height, {s->left[0], s->left[1]}, {s->top[0], s->top[1]}, s->overlay_width,
-        s->overlay_height, fade,
+        s->width,
+        s->height,
+        {s->left[0], s->left[1]},
+        {s->top[0], s->top[1]},
+        s->overlay_width,
+        s->overlay_height,
+        fade,
+        s->mark_count,
     };
     gpu_dispatch(cmd, kernel, s->set, &push, sizeof push, (s->width + SHARED_TILE - 1) / SHARED_TILE,
                  (s->height + SHARED_TILE - 1) / SHARED_TILE, 2);

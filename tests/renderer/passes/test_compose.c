@@ -48,6 +48,23 @@ static void place(struct bed *b, uint64_t seed, double away_m)
     }
 }
 
+// A list of all tiles of both eyes (renderer/shared/tiles.glsl).
+static struct gpu_buffer every_tile(struct rig *rig)
+{
+    const uint32_t across = (WIDTH + SHARED_TILE - 1) / SHARED_TILE,
+                   down = (HEIGHT + SHARED_TILE - 1) / SHARED_TILE;
+    const uint32_t count = EYES * across * down;
+    struct gpu_buffer tiles;
+    assert_true(gpu_buffer_create(rig->gpu, "tiles", 4 * (SHARED_TILES_FIRST + count),
+                                  VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT,
+                                  GPU_HOST, &tiles));
+    uint32_t *words = tiles.mapped;
+    memcpy(words, (const uint32_t[]){count, 1, 1, count}, 16);
+    for (uint32_t i = 0; i < count; i++)
+        words[SHARED_TILES_FIRST + i] = i % across | i / across % down << 15 | i / (across * down) << 30;
+    return tiles;
+}
+
 static void run(struct bed *b, bool with_id)
 {
     struct rig *rig = &b->rig;
@@ -59,24 +76,25 @@ static void run(struct bed *b, bool with_id)
     struct gpu_image position[2];
     for (int i = 0; i < 2; i++)
         position[i] = rig_image(rig, VK_FORMAT_R32G32B32A32_SFLOAT, WIDTH, HEIGHT);
+    struct gpu_buffer tiles = every_tile(rig);
     struct compose pass;
     const struct compose_desc desc = {.gpu = rig->gpu,
                                       .frame = &rig->frame,
-                                      .width = WIDTH,
-                                      .height = HEIGHT,
                                       .depth = depth.view,
                                       .id = with_id ? id.view : VK_NULL_HANDLE,
                                       .redraw_map = map.view,
-                                      .position = {position[0].view, position[1].view}};
+                                      .position = {position[0].view, position[1].view},
+                                      .tiles = &tiles};
     assert_true(compose_init(&pass, &desc));
     rig_upload(rig, &map, 1, b->map);
     rig_upload(rig, &position[1], sizeof b->position[0], b->position);
     rig_frame(rig, &b->view);
     VkCommandBuffer cmd = rig_begin(rig);
-    compose_record(&pass, cmd, 1);
+    compose_record_tiles(&pass, cmd, 1);
     rig_end(rig, cmd);
     rig_download(rig, &position[1], sizeof b->position[0], b->position);
     compose_finish(&pass);
+    gpu_buffer_destroy(rig->gpu, &tiles);
     struct gpu_image *images[] = {&depth, &id, &map, &position[0], &position[1]};
     for (size_t i = 0; i < countof(images); i++)
         gpu_image_destroy(rig->gpu, images[i]);

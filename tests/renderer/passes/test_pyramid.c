@@ -1,6 +1,5 @@
 // The pyramid (pull and fill) against the double-precision reference: levels, colours, depths, redraw map.
-#include "renderer/passes/pyramid/pyramid.h"
-#include "tests/renderer/passes/fill_reference.h"
+#include "tests/renderer/passes/pyramid_bed.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -9,250 +8,6 @@
 #include <string.h>
 
 #include <cmocka.h>
-
-// half floats hold values near 1 to 2^-11; they are rounded, or cut, once every three levels
-static const double level_error = 1.5e-3;
-
-struct bed {
-    struct rig rig;
-    struct rig_view view;
-    uint32_t width, height;
-    size_t count; // pixels of both eyes
-    struct gpu_image colour[2], position[2], redraw_map;
-    float (*positions)[4], (*after)[4];
-    uint8_t *forced; // what the map holds before, where the pass reads it
-    bool turns;      // moving pixels may be redrawn before their confidence asks for it
-    uint32_t turn;
-    uint8_t (*colours)[4]; // before
-    uint8_t (*result)[4];  // after
-    uint8_t *map;
-};
-
-struct verdict {
-    uint32_t redrawn, kept_holes, undecided, wrong_decisions, wrong_colours, wrong_positions;
-    double worst_colour; // of 255
-};
-
-static void bed_open(struct bed *b, uint32_t width, uint32_t height)
-{
-    *b = (struct bed){.width = width, .height = height, .count = (size_t)2 * width * height};
-    assert_true(rig_open(&b->rig));
-    b->view = rig_view_default(width, height);
-    for (int i = 0; i < 2; i++) {
-        b->colour[i] = rig_image(&b->rig, VK_FORMAT_R8G8B8A8_UNORM, width, height);
-        b->position[i] = rig_image(&b->rig, VK_FORMAT_R32G32B32A32_SFLOAT, width, height);
-    }
-    b->redraw_map = rig_image(&b->rig, VK_FORMAT_R8_UINT, width, height);
-    b->positions = calloc(b->count, sizeof *b->positions);
-    b->after = calloc(b->count, sizeof *b->after);
-    b->forced = calloc(b->count, 1);
-    b->colours = calloc(b->count, sizeof *b->colours);
-    b->result = calloc(b->count, sizeof *b->result);
-    b->map = calloc(b->count, 1);
-    assert_true(b->positions && b->after && b->forced && b->colours && b->result && b->map);
-    uint64_t random = width;
-    for (int eye = 0; eye < EYES; eye++)
-        b->view.eyes[eye].pose.orientation = rig_turn(&random, 3);
-}
-
-static void bed_close(struct bed *b)
-{
-    for (int i = 0; i < 2; i++) {
-        gpu_image_destroy(b->rig.gpu, &b->colour[i]);
-        gpu_image_destroy(b->rig.gpu, &b->position[i]);
-    }
-    gpu_image_destroy(b->rig.gpu, &b->redraw_map);
-    free(b->positions);
-    free(b->after);
-    free(b->forced);
-    free(b->colours);
-    free(b->result);
-    free(b->map);
-    rig_close(&b->rig);
-}
-
-static struct pyramid_confidence confidence_of(const struct fill_parameters *q)
-{
-    return (struct pyramid_confidence){.epsilon = (float)q->epsilon,
-                                       .fovea_deg = (float)q->fovea_deg,
-                                       .periphery_deg = (float)q->periphery_deg,
-                                       .hole_decay = (float)q->hole_decay,
-                                       .dynamic_decay = (float)q->dynamic_decay};
-}
-
-static struct pyramid make(struct bed *b, const struct fill_parameters *q, bool forced)
-{
-    struct pyramid pass;
-    const struct pyramid_desc desc = {.gpu = b->rig.gpu,
-                                      .frame = &b->rig.frame,
-                                      .width = b->width,
-                                      .height = b->height,
-                                      .colour = {b->colour[0].view, b->colour[1].view},
-                                      .position = {b->position[0].view, b->position[1].view},
-                                      .redraw_map = b->redraw_map.view,
-                                      .moving = forced,
-                                      .confidence = confidence_of(q)};
-    assert_true(pyramid_init(&pass, &desc));
-    return pass;
-}
-
-// epsilon 0 gives all levels; the thresholds may change afterwards.
-static struct pyramid make_unlimited(struct bed *b)
-{
-    return make(b, &(struct fill_parameters){.epsilon = 0, .hole_decay = 1}, false);
-}
-
-static void use(struct pyramid *pass, const struct fill_parameters *q)
-{
-    const uint32_t levels = pass->confidence.levels;
-    pass->confidence = confidence_of(q);
-    pass->confidence.levels = levels;
-}
-
-// `before`: the redraw map's contents; NULL: nothing that could be read as a map.
-static void run(struct bed *b, const struct pyramid *pass, uint32_t target, const uint8_t *before)
-{
-    rig_upload(&b->rig, &b->colour[target], sizeof *b->colours, b->colours);
-    rig_upload(&b->rig, &b->position[target], sizeof *b->positions, b->positions);
-    memset(b->map, 7, b->count); // every pixel must be written
-    rig_upload(&b->rig, &b->redraw_map, 1, before ? before : b->map);
-    rig_frame(&b->rig, &b->view);
-    VkCommandBuffer cmd = rig_begin(&b->rig);
-    pyramid_pull(pass, cmd, target);
-    pyramid_fill(pass, cmd, target, b->turn);
-    rig_end(&b->rig, cmd);
-    rig_download(&b->rig, &b->colour[target], sizeof *b->result, b->result);
-    rig_download(&b->rig, &b->position[target], sizeof *b->after, b->after);
-    rig_download(&b->rig, &b->redraw_map, 1, b->map);
-    for (size_t i = 0; i < b->count; i++)
-        assert_true(b->map[i] <= 1);
-}
-
-static void judge_pixel(const struct bed *b, size_t i, const struct fill_answer *a,
-                        const struct fill_parameters *q, struct verdict *v)
-{
-    const double epsilon = q->epsilon;
-    const bool expected = b->forced[i] || epsilon >= 1 || a->confidence < epsilon;
-    // without a ramp between phi_F and phi_0 the rim is as sharp as an angle in floats
-    const bool rim = q->periphery_deg - q->fovea_deg < 0.1 && fabs(a->from_fovea_deg) < 2e-3;
-    const bool undecided =
-        !b->forced[i] && epsilon > 0 && epsilon < 1 && (rim || fabs(a->confidence - epsilon) < level_error);
-    const bool early = b->turns && b->positions[i][3] >= 2 && b->map[i]; // a law of its own, below
-    v->redrawn += b->map[i];
-    v->undecided += undecided;
-    v->wrong_decisions += !undecided && !early && b->map[i] != expected;
-    if (!a->hole) {
-        v->wrong_colours += memcmp(b->result[i], b->colours[i], 4) != 0; // never touched
-    } else if (!b->map[i]) {
-        v->kept_holes++;
-        double worst = 0;
-        for (int c = 0; c < 3; c++)
-            worst = fmax(worst, fabs(b->result[i][c] - 255 * a->rgb[c]));
-        v->worst_colour = fmax(v->worst_colour, worst);
-        v->wrong_colours += !(worst <= 1) || b->result[i][3] != 255;
-    }
-    const float *p = b->after[i];
-    if (a->hole && !b->map[i]) {
-        const bool depth_ok = a->depth == 0 ? p[0] == 0 : fabs((double)p[0] / a->depth - 1) < 1e-5;
-        v->wrong_positions += !depth_ok || p[1] != 0 || p[2] != 0 || p[3] != 0;
-    } else {
-        v->wrong_positions += memcmp(p, b->positions[i], sizeof *b->after) != 0;
-    }
-}
-
-static struct verdict judge(const struct bed *b, const struct fill_parameters *q)
-{
-    struct verdict v = {0};
-    for (int eye = 0; eye < EYES; eye++) {
-        const size_t at = (size_t)eye * b->count / 2;
-        const float(*positions)[4] = (const float(*)[4])(b->positions + at);
-        struct fill_pyramid p = fill_build(b->width, b->height, &b->view.eyes[eye],
-                                           (const uint8_t(*)[4])(b->colours + at), positions);
-        for (uint32_t i = 0; i < b->count / 2; i++) {
-            struct fill_answer a = fill_ask(&p, &b->view.eyes[eye], q, positions, i % b->width, i / b->width);
-            judge_pixel(b, at + i, &a, q, &v);
-        }
-        fill_free(&p);
-    }
-    return v;
-}
-
-enum holes { NO_HOLES, SPECKLED, SPARSE, BLOCKS, ALL_HOLES, ONE_PIXEL, HOLES };
-
-static bool is_hole(enum holes holes, uint64_t *random, uint32_t x, uint32_t y)
-{
-    switch (holes) {
-    case SPECKLED:
-        return rig_below(random, 2);
-    case SPARSE:
-        return rig_below(random, 50) != 0;
-    case BLOCKS:
-        return (x / 11 + y / 7) % 2 || rig_below(random, 20) == 0;
-    case ALL_HOLES:
-    case ONE_PIXEL:
-        return true;
-    default:
-        return false;
-    }
-}
-
-static void paint(struct bed *b, enum holes holes, uint64_t seed)
-{
-    uint64_t random = seed;
-    const uint64_t noise = seed % 3 == 0 ? 256 : 40;
-    for (size_t i = 0; i < b->count; i++) {
-        const uint32_t x = (uint32_t)i % b->width, y = (uint32_t)(i % (b->count / 2)) / b->width;
-        const uint64_t kind = rig_below(&random, 10);
-        float w = kind < 2   ? -1.f
-                  : kind < 6 ? 1.f
-                             : 2.f + (float)rig_below(&random, 9) + (float)(1 + rig_below(&random, 12)) / 64;
-        if (w >= 2 && !b->turns)
-            w = 1; // a pass that was not told that objects move
-        if (is_hole(holes, &random, x, y))
-            w = 0;
-        const struct rig_eye *e = &b->view.eyes[i / (b->count / 2)];
-        const struct dvec3 ray = dquat_rotate(
-            e->pose.orientation, viewing_pixel_direction(&e->fov, b->width, b->height, x + 0.5, y + 0.5));
-        const struct dvec3 at =
-            dvec3_add(e->pose.position, dvec3_scale(ray, exp(rig_uniform(&random, log(0.04), log(100)))));
-        const float position[4] = {(float)at.x, (float)at.y, (float)at.z, w};
-        memcpy(b->positions[i], position, sizeof position);
-        for (int c = 0; c < 3; c++) {
-            const uint64_t base = noise == 256 ? 0 : (2u * x + 3u * y * (unsigned)(c + 1)) % 216;
-            b->colours[i][c] = w == 0 ? 0 : (uint8_t)(base + rig_below(&random, noise));
-        }
-        b->colours[i][3] = w == 0 ? 0 : 255;
-    }
-    for (int eye = 0; holes == ONE_PIXEL && eye < EYES; eye++) {
-        const size_t i = (size_t)eye * b->count / 2 + rig_below(&random, b->count / 2);
-        b->positions[i][3] = 1;
-        memcpy(b->colours[i], (const uint8_t[]){200, 100, 50, 255}, 4);
-    }
-}
-
-static void look(struct bed *b, double x_deg, double y_deg)
-{
-    for (int eye = 0; eye < EYES; eye++) {
-        b->view.eyes[eye].gaze_x_deg = x_deg - 3 * eye;
-        b->view.eyes[eye].gaze_y_deg = y_deg;
-    }
-}
-
-static const struct fill_parameters paper = {0.2, 10, 30, 0.6, 0.75};
-
-static void draw_parameters(struct bed *b, struct fill_parameters *q, uint64_t seed)
-{
-    static const double epsilons[] = {0, 0.05, 0.1, 0.2, 0.5, 0.9, 1}, decays[] = {0, 0.3, 0.6, 0.6, 0.9, 1};
-    uint64_t random = seed;
-    // ahead, a corner, outside the image, beyond 90 deg, behind, none
-    static const double gazes[][2] = {{0, 0}, {48, 50}, {-80, 10}, {120, -20}, {180, 0}, {(double)NAN, 0}};
-    *q = seed % 4 == 0 ? paper
-                       : (struct fill_parameters){epsilons[rig_below(&random, 7)], rig_uniform(&random, 0, 90),
-                                                  rig_uniform(&random, 0, 180), decays[rig_below(&random, 6)],
-                                                  decays[rig_below(&random, 6)]};
-    const size_t gaze = rig_below(&random, 6);
-    look(b, gazes[gaze][0], gazes[gaze][1]);
-}
 
 static void any_image_agrees_with_the_reference(void **state)
 {
@@ -263,19 +18,19 @@ static void any_image_agrees_with_the_reference(void **state)
     for (size_t s = 0; s < countof(sizes); s++) {
         struct bed b;
         bed_open(&b, sizes[s][0], sizes[s][1]);
-        struct pyramid unlimited = make_unlimited(&b),
-                       forced = make(&b, &(struct fill_parameters){.epsilon = 0, .hole_decay = 1}, true);
+        struct pyramid unlimited = bed_make_unlimited(&b),
+                       forced = bed_make(&b, &(struct fill_parameters){.epsilon = 0, .hole_decay = 1}, true);
         for (uint64_t seed = 0; seed < 8 * HOLES; seed++) {
             struct fill_parameters q;
             const bool force = seed / HOLES % 2;
             b.turns = force;
-            paint(&b, (enum holes)(seed % HOLES), 1000 * s + seed);
-            draw_parameters(&b, &q, seed / HOLES + 8 * seed + s);
-            use(force ? &forced : &unlimited, &q);
+            bed_paint(&b, (enum holes)(seed % HOLES), 1000 * s + seed);
+            bed_draw_parameters(&b, &q, seed / HOLES + 8 * seed + s);
+            bed_use(force ? &forced : &unlimited, &q);
             for (size_t i = 0; i < b.count; i++)
                 b.forced[i] = force && (i * 2654435761u + seed) % 7 == 0;
-            run(&b, force ? &forced : &unlimited, (uint32_t)seed % 2, force ? b.forced : NULL);
-            struct verdict v = judge(&b, &q);
+            bed_run(&b, force ? &forced : &unlimited, (uint32_t)seed % 2, force ? b.forced : NULL);
+            struct verdict v = bed_judge(&b, &q);
             if (v.wrong_decisions || v.wrong_colours || v.wrong_positions)
                 fail_msg(
                     "%u x %u, seed %u, epsilon %g, A %g, D %g: %u decisions, %u colours (%g) and %u positions "
@@ -309,8 +64,8 @@ static void moving_pixels_are_redrawn_in_turns_of_whole_tiles(void **state)
     struct bed b;
     bed_open(&b, 130, 90);
     b.turns = true;
-    look(&b, 180, 0); // all is periphery
-    struct pyramid pass = make(&b, &(struct fill_parameters){.epsilon = 0, .hole_decay = 1}, true);
+    bed_look(&b, 180, 0); // all is periphery
+    struct pyramid pass = bed_make(&b, &(struct fill_parameters){.epsilon = 0, .hole_decay = 1}, true);
     for (size_t i = 0; i < b.count; i++) {
         b.positions[i][3] = i % 5 ? 2 : 1; // four in five move
         memcpy(b.colours[i], (const uint8_t[]){9, 9, 9, 255}, 4);
@@ -319,9 +74,9 @@ static void moving_pixels_are_redrawn_in_turns_of_whole_tiles(void **state)
         const struct fill_parameters q = {cases[c].epsilon, 10, 30, 0.6, cases[c].decay};
         uint32_t *redraws = calloc(b.count, sizeof *redraws), most = 0, all = 0;
         assert_non_null(redraws);
-        use(&pass, &q);
+        bed_use(&pass, &q);
         for (b.turn = 7; b.turn < 7 + cases[c].period; b.turn++) {
-            run(&b, &pass, 0, b.forced);
+            bed_run(&b, &pass, 0, b.forced);
             uint32_t now = 0;
             for (uint32_t i = 0; i < b.count; i++) {
                 const uint32_t x = i % b.width & ~7u, y = i / b.width % b.height & ~7u;
@@ -350,14 +105,14 @@ static void every_level_is_the_mean_and_contrast_of_its_inputs(void **state)
     (void)state;
     struct bed b;
     bed_open(&b, 70, 47);
-    look(&b, 0, 0);
-    struct pyramid pass = make_unlimited(&b);
+    bed_look(&b, 0, 0);
+    struct pyramid pass = bed_make_unlimited(&b);
     float(*level)[4] = malloc(b.count * sizeof *level * 4);
     float(*depths)[4] = malloc(b.count * sizeof *depths * 4);
     double worst = 0, worst_depth = 0;
     for (uint64_t seed = 0; seed < 2 * HOLES; seed++) {
-        paint(&b, (enum holes)(seed % HOLES), seed);
-        run(&b, &pass, 0, NULL);
+        bed_paint(&b, (enum holes)(seed % HOLES), seed);
+        bed_run(&b, &pass, 0, NULL);
         for (uint32_t eye = 0; eye < EYES; eye++) {
             const size_t at = eye * b.count / 2;
             struct fill_pyramid p =
@@ -407,24 +162,24 @@ static void the_limit_of_levels_changes_nothing(void **state)
                                       {0.7, 0.6}, {0.2, 0.3},  {0.2, 0.9}, {0.3, 0}};
     struct bed b;
     bed_open(&b, 130, 20);
-    struct pyramid unlimited = make_unlimited(&b);
+    struct pyramid unlimited = bed_make_unlimited(&b);
     uint8_t *map = malloc(b.count), (*result)[4] = malloc(b.count * sizeof *result);
     uint32_t kept = 0, shorter = 0, off = 0;
     for (size_t i = 0; i < countof(cases); i++) {
         const struct fill_parameters q = {cases[i][0], 10, 30, cases[i][1], 0.75};
-        struct pyramid limited = make(&b, &q, false);
+        struct pyramid limited = bed_make(&b, &q, false);
         shorter += limited.confidence.levels < unlimited.confidence.levels;
         // the first level left out is worth less than epsilon, the last kept one is not (level 1 always stays)
         const double last = pow(q.hole_decay, limited.confidence.levels);
         assert_true(last >= q.epsilon || limited.confidence.levels == 1);
         for (uint64_t seed = 0; seed < 2 * HOLES; seed++) {
-            paint(&b, (enum holes)(seed % HOLES), 50 * i + seed);
-            look(&b, seed < HOLES ? 30 : -90, 10);
-            use(&unlimited, &q);
-            run(&b, &unlimited, 0, NULL);
+            bed_paint(&b, (enum holes)(seed % HOLES), 50 * i + seed);
+            bed_look(&b, seed < HOLES ? 30 : -90, 10);
+            bed_use(&unlimited, &q);
+            bed_run(&b, &unlimited, 0, NULL);
             memcpy(map, b.map, b.count);
             memcpy(result, b.result, b.count * sizeof *result);
-            run(&b, &limited, 0, NULL);
+            bed_run(&b, &limited, 0, NULL);
             assert_memory_equal(map, b.map, b.count);
             for (size_t k = 0; k < b.count; k++) {
                 kept += !map[k] && b.positions[k][3] == 0;
@@ -447,8 +202,8 @@ static void the_limit_of_levels_changes_nothing(void **state)
 static uint32_t redrawn_with(struct bed *b, struct pyramid *pass, const struct fill_parameters *q)
 {
     uint32_t sum = 0;
-    use(pass, q);
-    run(b, pass, 1, NULL);
+    bed_use(pass, q);
+    bed_run(b, pass, 1, NULL);
     for (size_t i = 0; i < b->count; i++)
         sum += b->map[i];
     return sum;
@@ -459,22 +214,22 @@ static void the_ends_of_epsilon_and_no_gaze(void **state)
     (void)state;
     struct bed b;
     bed_open(&b, 40, 36);
-    struct pyramid pass = make_unlimited(&b);
+    struct pyramid pass = bed_make_unlimited(&b);
     struct fill_parameters q = paper;
     for (int holes = 0; holes < HOLES; holes++) {
-        paint(&b, (enum holes)holes, 9);
-        look(&b, 0, 0);
+        bed_paint(&b, (enum holes)holes, 9);
+        bed_look(&b, 0, 0);
         q.epsilon = 0;
         assert_int_equal(redrawn_with(&b, &pass, &q), 0);
         for (size_t i = 0; holes != ALL_HOLES && i < b.count; i++)
             assert_int_equal(b.result[i][3], 255); // one valid pixel fills all
         q.epsilon = 1;
         assert_int_equal(redrawn_with(&b, &pass, &q), b.count);
-        look(&b, NAN, 0);
+        bed_look(&b, NAN, 0);
         q.epsilon = 1e-6;
         assert_int_equal(redrawn_with(&b, &pass, &q), b.count);
         // far beyond the image's edge everything valid and at rest is trusted
-        look(&b, 180, 0);
+        bed_look(&b, 180, 0);
         q = paper;
         if (holes == NO_HOLES) {
             for (size_t i = 0; i < b.count; i++)
@@ -493,18 +248,18 @@ static void the_background_does_not_bleed(void **state)
     (void)state;
     struct bed b;
     bed_open(&b, 70, 47);
-    struct pyramid pass = make_unlimited(&b);
+    struct pyramid pass = bed_make_unlimited(&b);
     uint32_t beside_surface = 0, background = 0;
     for (uint64_t seed = 0; seed < 4 * HOLES; seed++) {
         uint64_t random = seed;
-        paint(&b, (enum holes)(seed % HOLES), seed);
-        look(&b, 0, 0);
+        bed_paint(&b, (enum holes)(seed % HOLES), seed);
+        bed_look(&b, 0, 0);
         for (size_t i = 0; i < b.count; i++) {
             const uint8_t shade = (uint8_t)(64 + rig_below(&random, 190));
             const bool surface = b.positions[i][3] > 0;
             memcpy(b.colours[i], (const uint8_t[]){surface ? shade : 0, 0, surface ? 0 : shade, 255}, 4);
         }
-        run(&b, &pass, 0, NULL); // epsilon 0: every hole is kept
+        bed_run(&b, &pass, 0, NULL); // epsilon 0: every hole is kept
         for (size_t i = 0; i < b.count; i++) {
             if (b.positions[i][3] != 0)
                 continue;
@@ -543,12 +298,12 @@ static void only_holes_lose_by_contrast_and_size(void **state)
     (void)state;
     struct bed b;
     bed_open(&b, 40, 36);
-    struct pyramid pass = make_unlimited(&b);
+    struct pyramid pass = bed_make_unlimited(&b);
     const struct fill_parameters q = {0.999, 10, 30, 0.6, 0.75};
-    paint(&b, SPECKLED, 3); // noise of full contrast
-    look(&b, 180, 0);
-    use(&pass, &q);
-    run(&b, &pass, 0, NULL);
+    bed_paint(&b, SPECKLED, 3); // noise of full contrast
+    bed_look(&b, 180, 0);
+    bed_use(&pass, &q);
+    bed_run(&b, &pass, 0, NULL);
     for (size_t i = 0; i < b.count; i++)
         assert_int_equal(b.map[i], b.positions[i][3] == 0 || b.positions[i][3] >= 2);
     pyramid_finish(&pass);

@@ -16,6 +16,10 @@ static void refused(const char *spec, const char *first, const char *second)
     struct scene *scene = builtin_scene_open(spec, error, sizeof error);
     if (scene != NULL)
         fail_msg("'%s' was taken", spec);
+    char checked[512] = "";
+    static struct camera_path path;
+    assert_false(builtin_scene_check(spec, &path, checked, sizeof checked)); // for the same reason
+    assert_string_equal(checked, error);
     if (strstr(error, first) == NULL || strstr(error, second) == NULL || strchr(error, '\n') != NULL)
         fail_msg("'%s' gave: %s", spec, error);
 }
@@ -74,9 +78,27 @@ static void table_holds_what_is_known(void **state)
     assert_false(builtin_scene_known(""));
 }
 
+// The path is known without making the scene.
+static void check_knows_the_path(void **state)
+{
+    (void)state;
+    static const char *const specs[] = {"atrium", "town:triangles=20000,seed=3"};
+    static struct camera_path path;
+    char error[512] = "";
+    for (int i = 0; i < 2; i++) {
+        assert_true(builtin_scene_check(specs[i], &path, error, sizeof error));
+        struct scene *scene = builtin_scene_open(specs[i], error, sizeof error);
+        assert_non_null(scene);
+        assert_true(path.duration_s > 10 && path.duration_s == scene->path.duration_s);
+        assert_int_equal(path.knot_count, scene->path.knot_count);
+        scene_destroy(scene);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(check_knows_the_path),
         cmocka_unit_test(wrong_values_name_the_range),
         cmocka_unit_test(wrong_names_name_the_valid_ones),
         cmocka_unit_test(small_error_buffers_are_kept),

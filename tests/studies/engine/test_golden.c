@@ -1,5 +1,5 @@
 // Plans of frozen protocols keep their hashes on every machine and compiler. `test_studies_golden --write`
-// prints the table; it may change only together with the tag in plan.c.
+// prints the table; it may change only together with the tag in draw.c.
 #include "studies/engine/plan.h"
 
 #include "tests/studies/engine/sample_design.h"
@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-enum { DESIGNS = 9, SEEDS = 10, NUMBERS = 12 };
+enum { DESIGNS = 12, SEEDS = 10, NUMBERS = 12 };
 
 static struct protocol *design(int index)
 {
@@ -23,6 +23,9 @@ static struct protocol *design(int index)
         "[atrium, town]",
         "[atrium, town, yard]",
         "[atrium]",
+        "[atrium, town]",
+        "[atrium, town, yard]",
+        "[atrium, town]",
         "[atrium, town]"};
     static const char *const block[DESIGNS] = {
         SAMPLE_NINE,
@@ -38,7 +41,11 @@ static struct protocol *design(int index)
         "  order: fixed\n  trials: [{name: one, labels: {test: I}}, {options: [r, f]}, {role: 'null'}]\n",
         "  factors: {fixation: {levels: {cross: {settings: {fixation: cross, foveate: target}}, moving: "
         "{settings: "
-        "{fixation: moving}}}}}\n  repetitions: 2\n  settings: {spheres: [2, 6], count: n}\n"};
+        "{fixation: moving}}}}}\n  repetitions: 2\n  settings: {spheres: [2, 6], count: n}\n",
+        "  scene_use: random\n  factors: {epsilon: [0.2, 0.1], which: {options: [f]}}\n  null: 2\n"
+        "  catch: {count: 2, option: f, parameters: {f: {epsilon: 1}}}\n",
+        "  trials: [{name: one, role: 'null'}, {name: two, role: catch}, {name: three, scene: town}, {}, {}]\n",
+        "  order: block_random\n  repetitions: 2\n  trials: [{role: 'null'}, {}, {scene: town}]\n"};
     char error[PROTOCOL_ERROR] = "";
     struct protocol *protocol = sample_design(scenes[index], block[index], error, sizeof error);
     if (!protocol)

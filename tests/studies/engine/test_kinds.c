@@ -229,11 +229,15 @@ static void test_adjusting(void **state)
     "0.5, "                                                                                                    \
     "steps: [0.1], trials: 6, reversals: 3}\n"
 
-// One answer, right or wrong; the level of the trial.
+// One answer, right or wrong; the level of the trial, which is known while it is to come.
 static double climb(struct rig *rig, bool right)
 {
+    machine_look(rig->machine, &rig->view);
+    const bool coming = rig->view.screen == MACHINE_READY || rig->view.screen == MACHINE_REST;
+    const double announced = rig->view.level;
     begin(rig);
     double shown = rig->view.level;
+    assert_true(!coming || announced == shown);
     frames(rig, 10);
     toggle(rig);
     enum plan_slot tested = rig->view.trial->test_slot;

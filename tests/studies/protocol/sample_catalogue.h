@@ -10,16 +10,17 @@ static inline const struct catalogue *sample_catalogue(void)
     static const char *const splat[] = {"atomic", "points", 0};
     static const char *const switched[] = {"off", "on", 0};
     static const struct catalogue_parameter time_warped[] = {
-        {"epsilon", "", 0, 1, 0.2, 0},
-        {"fovea_deg", "deg", 0, 90, 10, 0},
-        {"periphery_deg", "deg", 0, 120, 30, 0},
-        {"hole_decay", "", 0, 1, 0.6, 0},
-        {"dynamic_objects", "", 0, 1, 0, dynamic},
-        {"splat", "", 0, 1, 0, splat},
+        {"epsilon", "", 0, 1, 0.2, 0, "confidence below which a pixel is drawn anew"},
+        {"fovea_deg", "deg", 0, 90, 10, 0, 0},
+        {"periphery_deg", "deg", 0, 120, 30, 0, 0},
+        {"hole_decay", "", 0, 1, 0.6, 0, 0},
+        {"dynamic_objects", "", 0, 1, 0, dynamic, 0},
+        {"splat", "", 0, 1, 0, splat, 0},
     };
-    static const struct catalogue_mode modes[] = {{"regular", 0, 0}, {"time_warped", time_warped, 6}};
+    static const struct catalogue_mode modes[] = {{"regular", 0, 0, "every pixel"},
+                                                  {"time_warped", time_warped, 6, 0}};
     static const char *const scenes[] = {"atrium", "town", "yard"};
-    static const struct catalogue_parameter settings[] = {{"moving_objects", "", 0, 1, 0, switched}};
+    static const struct catalogue_parameter settings[] = {{"moving_objects", "", 0, 1, 0, switched, 0}};
     static const char *const missing[] = {"ray_traced", 0};
     static const struct catalogue catalogue = {.modes = modes,
                                                .mode_count = 2,

@@ -69,6 +69,22 @@ static void expect(const char *text, size_t size, const char *sentence)
     assert_true((protocol == NULL) == (*sentence != '\0'));
 }
 
+// Where to put every bad file as well, for the schema's test; NULL: nowhere.
+static const char *folder;
+
+static void keep(const char *text, const char *sentence)
+{
+    static unsigned count;
+    char path[512];
+    if (!folder)
+        return;
+    snprintf(path, sizeof path, "%s/%03u.yaml", folder, count++);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fprintf(file, "# %s\n%s", sentence, text);
+    assert_int_equal(fclose(file), 0);
+}
+
 struct bad {
     const char *after, *from, *to, *sentence;
 };
@@ -78,6 +94,7 @@ static void expect_all(const struct bad *cases, size_t count)
     for (size_t i = 0; i < count; i++) {
         char *text = changed(cases[i].after, cases[i].from, cases[i].to);
         expect(text, strlen(text), cases[i].sentence);
+        keep(text, cases[i].sentence);
         free(text);
     }
 }
@@ -86,6 +103,7 @@ static void test_the_good_file_is_good(void **state)
 {
     (void)state;
     expect(good, strlen(good), "");
+    keep(good, "");
 }
 
 static void test_names(void **state)
@@ -118,9 +136,11 @@ static void test_names(void **state)
          "p.yaml:27:15: option 'foveatd' is not known here; did you mean 'foveated'?"},
         {"before", "kind: rate", "kind: rat",
          "p.yaml:22:11: kind 'rat' is not known here; did you mean 'rate'?"},
-        {"main", "kind: toggle", "kind: staircase", "p.yaml:25:5: the staircase block has no 'staircase'; add it"},
+        {"main", "kind: toggle", "kind: staircase",
+         "p.yaml:25:5: the staircase block has no 'staircase'; add it"},
         {"", "mode: time_warped", "mode: ray_traced",
-         "p.yaml:7:20: mode 'ray_traced' does not exist in this program yet; `fovstudy modes` lists those that do"},
+         "p.yaml:7:20: mode 'ray_traced' does not exist in this program yet; `fovstudy modes` lists those that "
+         "do"},
         {"", "fovea_deg", "fovea_dg",
          "p.yaml:30:26: parameter of time_warped 'fovea_dg' is not known here; did you mean 'fovea_deg'?"},
         {"", "epsilon: [", "epsilom: [",
@@ -323,8 +343,9 @@ static void test_files(void **state)
     assert_non_null(strstr(error, "larger than 1048576 bytes"));
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
+    folder = argc == 3 && strcmp(argv[1], "--keep") == 0 ? argv[2] : NULL;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_the_good_file_is_good),
         cmocka_unit_test(test_names),

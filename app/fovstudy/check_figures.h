@@ -1,0 +1,12 @@
+// The smallest effects that planned tests show, as text and JSON.
+#ifndef APP_FOVSTUDY_CHECK_FIGURES_H
+#define APP_FOVSTUDY_CHECK_FIGURES_H
+
+#include "app/fovstudy/check_power.h"
+#include "studies/protocol/text.h"
+
+void check_figures_text(struct text *text, const struct check_analyses *analyses, uint32_t people,
+                        bool assumed);
+void check_figures_json(struct text *text, const struct check_analyses *analyses); // ,"power":[...]
+
+#endif
