@@ -61,8 +61,10 @@ static void copy_modes(struct study_names *names)
 {
     struct catalogue_parameter *next = names->parameters;
     for (size_t m = 0; modes[m]; m++) {
-        names->modes[m] = (struct catalogue_mode){
-            .name = modes[m]->name, .parameters = next, .parameter_count = modes[m]->parameter_count};
+        names->modes[m] = (struct catalogue_mode){.name = modes[m]->name,
+                                                  .parameters = next,
+                                                  .parameter_count = modes[m]->parameter_count,
+                                                  .foveated = modes[m]->foveated};
         for (uint32_t i = 0; i < modes[m]->parameter_count; i++) {
             const struct mode_parameter *from = &modes[m]->parameters[i];
             *next++ = (struct catalogue_parameter){.name = from->name,

@@ -5,6 +5,7 @@
 #ifndef STUDIES_PROTOCOL_CATALOGUE_H
 #define STUDIES_PROTOCOL_CATALOGUE_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 enum { CATALOGUE_PARAMETERS = 16, CATALOGUE_SETTINGS = 8 }; // at most, per mode and in all
@@ -20,6 +21,7 @@ struct catalogue_mode {
     const char *name;
     const struct catalogue_parameter *parameters;
     uint32_t parameter_count;
+    bool foveated; // what it draws depends on the gaze
 };
 
 struct catalogue {
