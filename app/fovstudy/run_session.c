@@ -118,6 +118,11 @@ enum session_result run_go(struct run *run, const struct machine_start *start, c
         .progress = progress,
         .progress_user = run,
         .say = say,
+        .preflight = options->no_preflight ? SESSION_PREFLIGHT_NEVER
+                     : options->preflight  ? SESSION_PREFLIGHT_ALWAYS
+                                           : SESSION_PREFLIGHT_REAL,
+        .preflight_frames = (uint32_t)options->preflight,
+        .playback_bytes = options->playback_mb * 1000000,
         .patience_s = options->patience_s,
     };
     signal(SIGPIPE, SIG_IGN); // a reader of the events that goes away is told in a sentence
