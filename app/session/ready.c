@@ -123,7 +123,7 @@ enum ready_result ready_make(struct ready *ready, struct show *show, const struc
         result = render(show, view, error, error_size);
     if (result != READY_DONE)
         return result;
-    tell(show, view, at_ns);
+    tell(show, view, display_now_ns(show->desc->display) - show->desc->origin_ns);
     ready->done = true;
     ready->trial = view->trial_index;
     ready->attempt = view->attempt;

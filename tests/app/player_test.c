@@ -22,7 +22,7 @@ static void paint(uint8_t *out, size_t pixels, uint32_t frame, uint32_t eye, uin
     for (size_t i = 0; i < pixels; i++)
         for (size_t c = 0; c < 4; c++) {
             random = random * 1664525u + 1013904223u;
-            out[4 * i + c] = c == 3 ? 255 : (uint8_t)(i / 64 * (c + 1) + frame + (random >> 24) % noise);
+            out[4 * i + c] = (uint8_t)(c == 3 ? 255 : i / 64 * (c + 1) + frame + (random >> 24) % noise);
         }
 }
 
