@@ -26,7 +26,8 @@ struct run_options {
     double patience_s;          // 0: for ever
     uint64_t seed, number;
     bool has_seed, has_number;
-    bool unblind, again;
+    uint64_t preflight, playback_mb; // 0: not given
+    bool unblind, again, no_preflight;
 };
 
 // -1 to go on, else the exit status (help and wrong usage have been printed). For a resumed session what is not

@@ -49,6 +49,11 @@ void measure_destroy(struct measure *measure)
     free(measure);
 }
 
+bool measure_at(uint64_t count)
+{
+    return count <= FIRST_STEP * FIRST_COUNT ? count % FIRST_STEP == 0 : count % LATER_STEP == 0;
+}
+
 bool measure_due(struct measure *measure, const struct machine_view *view)
 {
     if (view->slot == PLAN_SLOT_NONE || view->fade > 0.0)
@@ -59,9 +64,7 @@ bool measure_due(struct measure *measure, const struct machine_view *view)
         measure->full_frames[0] = measure->full_frames[1] = 0;
     }
     uint64_t count = ++measure->full_frames[view->slot];
-    if (count <= FIRST_STEP * FIRST_COUNT)
-        return count % FIRST_STEP == 0;
-    return count % LATER_STEP == 0;
+    return measure_at(count);
 }
 
 static bool add_eye(struct measure *measure, struct image_error_sum *sum, int eye,
