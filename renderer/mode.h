@@ -30,6 +30,7 @@ struct mode {
     const char *source;                      // the paper
     const struct mode_parameter *parameters; // NULL where there are none
     uint32_t parameter_count;
+    bool foveated; // what it draws depends on the gaze
     // False with one sentence in `why` where the device lacks what the mode needs with these values. NULL: runs
     // anywhere.
     bool (*supported)(const struct gpu *gpu, const double *values, char *why, size_t why_size);

@@ -18,6 +18,7 @@
 struct renderer;
 struct renderer_scene;
 struct renderer_option;
+struct renderer_picture;
 
 enum renderer_log_level { RENDERER_ERROR, RENDERER_WARNING, RENDERER_INFO };
 
@@ -101,6 +102,19 @@ bool renderer_set_marks(struct renderer *renderer, const struct renderer_mark *m
 // 1 gray; then the marks, then the overlay. option NULL: gray. With a surface this presents and waits for the
 // display's pace; without, the result only lies ready for renderer_read_screen.
 bool renderer_show(struct renderer *renderer, struct renderer_option *option, double fade);
+
+// Pictures made earlier, played back: an image of their own, and buffers to fill while others are shown.
+// buffers: 1..16. NULL after a logged sentence; destroyed before the renderer.
+struct renderer_picture *renderer_picture_create(struct renderer *renderer, uint32_t buffers);
+void renderer_picture_destroy(struct renderer_picture *picture); // NULL is fine
+// Where a buffer's pixels are written, by any thread: rgba8, sRGB-encoded, the left eye, then the right; slow
+// to read.
+uint8_t *renderer_picture_buffer(struct renderer_picture *picture, uint32_t buffer);
+// As renderer_show, with that buffer's picture in place of an option's; -1: with the one it showed last. When
+// it returns the buffer may be written again.
+bool renderer_show_picture(struct renderer *renderer, struct renderer_picture *picture, int buffer,
+                           double fade);
+
 const char *renderer_redraw_name(enum frame_redraw redraw); // "first", "cut", ...; NULL for none
 void renderer_resized(struct renderer *renderer); // the surface changed size; the next show rebuilds its images
 

@@ -47,6 +47,9 @@ struct renderer_option {
 // A sentence for the application's log; user: the renderer.
 void renderer_relay(void *user, int level, const char *sentence);
 
+// Ends a frame that gpu_frame_begin began: screen pass and presenting. colour NULL: gray.
+bool renderer_show_image(struct renderer *renderer, const struct gpu_image *colour, double fade);
+
 // Fills the option's shared_frame.
 void renderer_fill_constants(struct renderer_option *option, const struct frame *frame);
 

@@ -55,10 +55,14 @@ bool renderer_set_marks(struct renderer *r, const struct renderer_mark *marks, u
 
 bool renderer_show(struct renderer *r, struct renderer_option *option, double fade)
 {
-    if (!gpu_frame_begin(&r->frame))
-        return false;
+    return gpu_frame_begin(&r->frame) &&
+           renderer_show_image(r, option && option->drawn ? option->result.colour : NULL, fade);
+}
+
+bool renderer_show_image(struct renderer *r, const struct gpu_image *colour, double fade)
+{
     VkCommandBuffer cmd = gpu_timer_begin(&r->frame, "screen");
-    screen_record(&r->screen, cmd, option && option->drawn ? option->result.colour : NULL, (float)fade);
+    screen_record(&r->screen, cmd, colour, (float)fade);
     gpu_timer_end(&r->frame);
     return gpu_frame_end(&r->frame) && (!r->present || gpu_present_show(r->present, &r->screen.image));
 }

@@ -91,7 +91,8 @@ static void copy_modes(struct study_names *names)
         names->modes[m] = (struct catalogue_mode){.name = modes[m]->name,
                                                   .parameters = next,
                                                   .parameter_count = modes[m]->parameter_count,
-                                                  .about = modes[m]->description};
+                                                  .about = modes[m]->description,
+                                                  .foveated = modes[m]->foveated};
         for (uint32_t i = 0; i < modes[m]->parameter_count; i++) {
             const struct mode_parameter *from = &modes[m]->parameters[i];
             *next++ = (struct catalogue_parameter){.name = from->name,

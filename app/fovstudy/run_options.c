@@ -25,6 +25,9 @@ enum option {
     EVENTS,
     UNBLIND,
     PATIENCE,
+    PREFLIGHT,
+    NO_PREFLIGHT,
+    PLAYBACK,
     AGAIN,    // run only
     PROTOCOL, // resume only
     OPTIONS
@@ -51,6 +54,10 @@ static const struct option_spec specs[OPTIONS + 1] = {
     [EVENTS] = {"events", "FILE|-", "one JSON object a line on what happens"},
     [UNBLIND] = {"unblind", NULL, "name the options on the terminal (logged)"},
     [PATIENCE] = {"patience", "S", "seconds to wait for a full disk; else for ever, with --observer 600"},
+    [PREFLIGHT] = {"preflight", "N",
+                   "draw each option N frames before its block, headless too; default 1000 on a display"},
+    [NO_PREFLIGHT] = {"no-preflight", NULL, "show what is too slow, to try things out (logged)"},
+    [PLAYBACK] = {"playback-mb", "N", "memory for prerendered pictures, default half of what is free"},
     [AGAIN] = {"again", NULL, "run: the participant may have an earlier session in this file"},
     [PROTOCOL] = {"protocol", "FILE|-", "resume: this file must be the session's protocol; -: look at none"},
     [OPTIONS] = {NULL, NULL, NULL},
@@ -105,6 +112,14 @@ static int set_numbers(struct run_options *out, enum option option, const char *
         return options_double(value, 1.0, 170.0, &out->fov_deg)
                    ? -1
                    : wrong_value(out, option, value, "degrees, 1 to 170");
+    case PREFLIGHT:
+        return options_uint64(value, 1, 1000000, &out->preflight)
+                   ? -1
+                   : wrong_value(out, option, value, "a whole number of frames from 1 to 1000000");
+    case PLAYBACK:
+        return options_uint64(value, 1, UINT64_MAX >> 20, &out->playback_mb)
+                   ? -1
+                   : wrong_value(out, option, value, "a whole number of MB (10^6 bytes)");
     case PATIENCE:
         return options_double(value, 0.1, 1e6, &out->patience_s)
                    ? -1
@@ -184,6 +199,9 @@ static int set(struct run_options *out, int option, const char *value)
     case UNBLIND:
         out->unblind = true;
         return -1;
+    case NO_PREFLIGHT:
+        out->no_preflight = true;
+        return -1;
     case SCENE:
     case ATTRIBUTE:
         return set_lists(out, (enum option)option, value);
@@ -219,6 +237,8 @@ static int check(struct run_options *out)
     if (!out->database)
         return options_wrong(command_name(out),
                              out->resume ? "of which study? give --db FILE" : "where to? give --db FILE");
+    if (out->no_preflight && out->preflight)
+        return options_wrong(command_name(out), "--preflight and --no-preflight contradict each other");
     if (out->resume)
         return -1;
     if (out->participants && (out->participant || out->has_number || !out->observer))

@@ -26,7 +26,8 @@ struct run_options {
     double patience_s;          // 0: for ever
     uint64_t seed, number;
     bool has_seed, has_number;
-    bool unblind, again;
+    uint64_t preflight, playback_mb; // 0: not given
+    bool unblind, again, no_preflight;
     uint64_t participants; // simulated ones, one after the other; 0: the one named
 };
 

@@ -133,6 +133,11 @@ enum session_result run_go(struct run *run, const struct machine_start *start, c
         .progress_user = run,
         .say = say,
         .say_user = run,
+        .preflight = options->no_preflight ? SESSION_PREFLIGHT_NEVER
+                     : options->preflight  ? SESSION_PREFLIGHT_ALWAYS
+                                           : SESSION_PREFLIGHT_REAL,
+        .preflight_frames = (uint32_t)options->preflight,
+        .playback_bytes = options->playback_mb * 1000000,
         .patience_s = options->patience_s,
     };
     desc.desk = run->desk =

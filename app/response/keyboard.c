@@ -157,11 +157,16 @@ static void follow(struct keyboard *keyboard, const struct machine_view *view)
     keyboard->subject = view->subject;
 }
 
+bool keyboard_is_abort(int key)
+{
+    return key == GLFW_KEY_ESCAPE;
+}
+
 enum keyboard_meaning keyboard_press(struct keyboard *keyboard, const struct machine_view *view, bool last_page,
                                      int key, struct machine_event *out_event)
 {
     follow(keyboard, view);
-    if (key == GLFW_KEY_ESCAPE)
+    if (keyboard_is_abort(key))
         return event(out_event, MACHINE_ABORT_KEY, 0);
     if (key == GLFW_KEY_F12 && view->screen != MACHINE_CONSENT && view->screen != MACHINE_ABORT)
         return event(out_event, MACHINE_FLAG, 0);

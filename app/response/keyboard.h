@@ -31,6 +31,7 @@ enum keyboard_meaning {
 // `key` is a GLFW key number; `last_page` whether the screen's text is read to its end.
 enum keyboard_meaning keyboard_press(struct keyboard *keyboard, const struct machine_view *view, bool last_page,
                                      int key, struct machine_event *out_event);
+bool keyboard_is_abort(int key); // it asks to end the session, on every screen
 // The marked rating, or scale_min - 1 where none is: what the screen shows.
 int32_t keyboard_selected(const struct keyboard *keyboard, const struct machine_view *view);
 

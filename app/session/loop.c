@@ -1,5 +1,6 @@
 #include "app/response/keyboard.h"
 #include "app/session/leap.h"
+#include "app/session/ready.h"
 #include "app/session/record.h"
 #include "app/session/session.h"
 #include "app/session/show.h"
@@ -28,6 +29,7 @@ struct loop {
     struct keyboard keyboard;
     struct fovea fovea;
     struct show show; // unused without a display
+    struct ready ready;
     struct screen_state state;
     struct trouble trouble;
     struct steady_clock clock;
@@ -253,6 +255,26 @@ static void tell(struct loop *loop, const struct machine_view *view)
     loop->desc->progress(loop->desc->progress_user, view);
 }
 
+static void say_closed(struct loop *loop);
+
+// Preflight and prerendered pictures. Without a display nothing is shown that could be late.
+static bool make_ready(struct loop *loop, const struct machine_view *view)
+{
+    int64_t now = now_ns(loop);
+    switch (ready_make(&loop->ready, &loop->show, view, now, loop->error, loop->error_size)) {
+    case READY_STOPPED:
+        machine_event(loop->machine, now_ns(loop), &(struct machine_event){.kind = MACHINE_ABORT_KEY});
+        return true;
+    case READY_CLOSED:
+        say_closed(loop);
+        return false;
+    case READY_FAILED:
+        return false;
+    default:
+        return true;
+    }
+}
+
 // Options are made while the participant reads or rests, so that a stimulus never waits for them.
 static bool prepare(struct loop *loop)
 {
@@ -262,7 +284,7 @@ static bool prepare(struct loop *loop)
                 view.screen == MACHINE_REST || view.screen == MACHINE_BREAK || view.screen == MACHINE_STIMULUS;
     if (!loop->desc->stage || !view.trial || !soon)
         return true;
-    return stage_prepare(loop->desc->stage, &view, loop->error, loop->error_size);
+    return stage_prepare(loop->desc->stage, &view, loop->error, loop->error_size) && make_ready(loop, &view);
 }
 
 // The experimenter's keys and notes; a note belongs to the trial that runs.

@@ -99,6 +99,11 @@ static struct cell *find_or_add(struct measure *measure, const struct measure_ke
     return cell;
 }
 
+bool measure_at(uint64_t count)
+{
+    return count <= FIRST_STEP * FIRST_COUNT ? count % FIRST_STEP == 0 : count % LATER_STEP == 0;
+}
+
 bool measure_due(struct measure *measure, const struct machine_view *view, int64_t condition_id)
 {
     if (view->slot == PLAN_SLOT_NONE || view->fade > 0.0)
@@ -113,9 +118,7 @@ bool measure_due(struct measure *measure, const struct machine_view *view, int64
         measure->full_frames[view->slot] = 0;
     }
     uint64_t count = ++measure->full_frames[view->slot];
-    if (count <= FIRST_STEP * FIRST_COUNT)
-        return count % FIRST_STEP == 0;
-    return count % LATER_STEP == 0;
+    return measure_at(count);
 }
 
 static bool add_eye(struct measure *measure, struct image_error_sum *sum, int eye,

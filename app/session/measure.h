@@ -32,6 +32,8 @@ void measure_destroy(struct measure *measure);                   // NULL is fine
 
 // Whether this full frame is one to measure: the 2nd, 4th and 6th of a condition in a trial, then each 8th.
 bool measure_due(struct measure *measure, const struct machine_view *view, int64_t condition_id);
+// The same of an option's full frames counted by the caller, from 1.
+bool measure_at(uint64_t count);
 // Draws the frame with the reference and adds the difference. False where memory, drawing or reading failed.
 bool measure_take(struct measure *measure, const struct measure_key *key, struct renderer_option *option,
                   struct renderer_option *reference, const struct frame *frame);

@@ -21,6 +21,12 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+enum session_preflight {
+    SESSION_PREFLIGHT_REAL, // where the clock is not simulated
+    SESSION_PREFLIGHT_ALWAYS,
+    SESSION_PREFLIGHT_NEVER // logged as an event
+};
+
 struct session_desc {
     const struct plan *plan;
     struct store *store;
@@ -50,7 +56,11 @@ struct session_desc {
     void (*say)(void *user, const char *sentence);
     void *say_user;
     struct desk *desk; // the experimenter's; NULL: none
-    double patience_s; // how long trouble with the disk may last before the session fails; 0: for ever
+    // Before each block its options are drawn to see whether they hold the refresh rate (preflight.h).
+    enum session_preflight preflight;
+    uint32_t preflight_frames; // of each option; 0: PREFLIGHT_FRAMES
+    uint64_t playback_bytes;   // of memory for prerendered pictures; 0: half of what is free
+    double patience_s;         // how long trouble with the disk may last before the session fails; 0: for ever
 };
 
 enum session_result {

@@ -6,12 +6,17 @@
 #include <stdio.h>
 #include <string.h>
 
+static bool make_playback(struct show *show);
+
 bool show_init(struct show *show, const struct session_desc *desc)
 {
     struct text_view view;
-    *show = (struct show){.desc = desc, .last_present_ns = -1};
+    *show = (struct show){.desc = desc};
+    pace_init(&show->pace, desc->display->refresh_hz);
     text_view_init(&view, &desc->fov, desc->display->width, desc->display->height, desc->ipd_m);
     overlay_init(&show->overlay, desc->renderer, &view);
+    if (playback_needed(desc->plan) && !make_playback(show))
+        return false;
     if (!desc->observer)
         return true;
     show->measure = measure_create(desc->display->width, desc->display->height);
@@ -20,7 +25,9 @@ bool show_init(struct show *show, const struct session_desc *desc)
 
 void show_finish(struct show *show)
 {
+    playback_destroy(show->playback);
     measure_destroy(show->measure);
+    show->playback = NULL;
     show->measure = NULL;
 }
 
@@ -110,16 +117,22 @@ bool show_measure_rest(struct show *show, char *error, size_t error_size)
                               show_store_errors(show, error, error_size));
 }
 
+bool show_target_fovea(const struct show *show, const struct machine_view *view, struct fovea_use *out)
+{
+    struct fixation_place at;
+    if (view->trial->resolved->foveate != PROTOCOL_FOVEATE_TARGET ||
+        !targets_fixation(stage_targets(show->desc->stage), view, &at))
+        return false;
+    fovea_on(at.point, show->desc->ipd_m, out);
+    return true;
+}
+
 // Which directions the fovea takes, and where they came from.
 static enum store_fovea follow(const struct show *show, const struct machine_view *view,
                                const struct fovea *fovea, int64_t start_ns, struct fovea_use *out)
 {
-    struct fixation_place at;
-    if (view->trial->resolved->foveate == PROTOCOL_FOVEATE_TARGET &&
-        targets_fixation(stage_targets(show->desc->stage), view, &at)) {
-        fovea_on(at.point, show->desc->ipd_m, out);
+    if (show_target_fovea(show, view, out))
         return STORE_FOVEA_TARGET;
-    }
     if (!show->desc->gaze) {
         *out = (struct fovea_use){.known = false};
         return STORE_FOVEA_FIXED;
@@ -209,7 +222,7 @@ static bool draw_option(struct show *show, const struct machine_view *view, cons
     struct fovea_use use;
     struct frame_stats stats;
     enum store_fovea source = follow(show, view, fovea, row->start_ns, &use);
-    struct frame frame = stage_frame(show->desc->stage, view, show->number, &use, &row->head_pose);
+    struct frame frame = stage_frame(show->desc->stage, view, show->pace.number, &use, &row->head_pose);
     struct renderer_option *option = stage_option(show->desc->stage, view->slot);
     memset(&stats, 0, sizeof stats);
     bool gaze = source == STORE_FOVEA_GAZE || source == STORE_FOVEA_LOST;
@@ -218,7 +231,6 @@ static bool draw_option(struct show *show, const struct machine_view *view, cons
         snprintf(error, error_size, "the GPU could not draw frame %llu", (unsigned long long)show->number);
         return false;
     }
-    int64_t condition_id = recorder_condition(recorder, view->trial, view->slot);
     if (!measure_option(show, view, recorder, option, &frame)) {
         snprintf(error, error_size, "the image error of frame %llu could not be measured",
                  (unsigned long long)show->number);
@@ -228,7 +240,6 @@ static bool draw_option(struct show *show, const struct machine_view *view, cons
     // A staircase trial has a condition for its level; what somebody adjusts has none.
     row->effective = view->adjusted ? stage_effective(show->desc->stage, view->slot) : NULL;
     fill_fovea(&use, source, row);
-    row->condition_id = condition_id;
     row->cpu_us = stats.cpu_ms * 1e3;
     row->gpu_us = stats.gpu_ms * 1e3;
     row->shaded_px = (int64_t)stats.shaded_px;
@@ -269,26 +280,109 @@ static struct store_frame empty_row(const struct show *show, const struct machin
 }
 
 // When the frame reached the eyes: computed, since neither kind of display reports it.
-static void time_row(struct show *show, struct store_frame *row)
+static void time_row(struct show *show, bool visible, bool repeated, struct store_frame *row)
 {
     struct display *display = show->desc->display;
-    double refresh_ns = display->refresh_hz > 0.0 ? 1e9 / display->refresh_hz : NAN;
+    bool known = display->refresh_hz > 0.0;
     row->present_estimated = true;
-    show->frame_ms = NAN;
-    show->late = false;
-    if (display->simulated_clock) {
-        row->present_ns = row->start_ns + (int64_t)llround(refresh_ns);
-        return;
-    }
-    row->present_ns = display_now_ns(display) - show->desc->origin_ns;
-    row->late = STORE_UNKNOWN;
-    if (!isnan(refresh_ns))
-        row->late =
-            show->last_present_ns >= 0 && (double)(row->present_ns - show->last_present_ns) > 1.5 * refresh_ns;
-    if (show->last_present_ns >= 0)
-        show->frame_ms = (double)(row->present_ns - show->last_present_ns) * 1e-6;
+    row->present_ns = display->simulated_clock ? row->start_ns + llround(1e9 / display->refresh_hz)
+                                               : display_now_ns(display) - show->desc->origin_ns;
+    show->frame_ms = show->pace.present_ns < 0 || display->simulated_clock
+                         ? (double)NAN
+                         : (double)(row->present_ns - show->pace.present_ns) * 1e-6;
+    bool late = pace_late(&show->pace, visible, repeated, row->present_ns);
+    if (!display->simulated_clock)
+        row->late = known ? late || row->late : STORE_UNKNOWN;
     show->late = row->late == 1;
-    show->last_present_ns = row->present_ns;
+}
+
+static bool measure_played(void *user, const struct machine_view *view, uint32_t number,
+                           const struct frame *frame)
+{
+    struct show *show = user;
+    const struct session_desc *desc = show->desc;
+    struct measure_key key = {.condition_id = desc->ids->condition_ids[view->condition],
+                              .scene = scene_index(show, view->trial)};
+    measure_metric(desc->plan->protocol, view->trial->resolved, key.metric);
+    return !show->measure || key.condition_id == desc->reference_id || !measure_at(number + 1) ||
+           measure_take(show->measure, &key, stage_option(desc->stage, view->slot),
+                        stage_reference(desc->stage), frame);
+}
+
+static bool target_fovea(void *user, const struct machine_view *view, struct fovea_use *out)
+{
+    return show_target_fovea(user, view, out);
+}
+
+static bool make_playback(struct show *show)
+{
+    const struct session_desc *desc = show->desc;
+    show->playback = playback_create(&(struct playback_desc){.renderer = desc->renderer,
+                                                             .stage = desc->stage,
+                                                             .width = desc->display->width,
+                                                             .height = desc->display->height,
+                                                             .budget_bytes = desc->playback_bytes,
+                                                             .fovea = target_fovea,
+                                                             .drawn = measure_played,
+                                                             .user = show});
+    return show->playback != NULL;
+}
+
+// Draws, takes or keeps the picture of a visible option; *out_repeated: it is the one shown before.
+static bool make_picture(struct show *show, const struct machine_view *view, const struct fovea *fovea,
+                         const struct recorder *recorder, struct store_frame *row, bool *out_repeated,
+                         char *error, size_t error_size)
+{
+    bool fresh = false, held = false;
+    row->condition_id = recorder_condition(recorder, view->trial, view->slot);
+    if (playback_plays(show->playback, view)) {
+        playback_take(show->playback, view, show->desc->display->simulated_clock, row, &fresh, &held);
+        row->late = held && !show->desc->display->simulated_clock;
+        *out_repeated = !fresh;
+        return true;
+    }
+    *out_repeated = !pace_due(&show->pace, view->slot, view->trial_started, row->start_ns);
+    if (*out_repeated)
+        row->effective = "{\"repeated\":true}";
+    return *out_repeated || draw_option(show, view, fovea, recorder, row, error, error_size);
+}
+
+static bool put(struct show *show, const struct machine_view *view, bool visible)
+{
+    struct renderer *renderer = show->desc->renderer;
+    if (visible && playback_plays(show->playback, view))
+        return playback_show(show->playback, view->slot, view->fade);
+    return renderer_show(renderer, visible ? stage_option(show->desc->stage, view->slot) : NULL,
+                         visible ? view->fade : 1.0);
+}
+
+// At which rate the trial's pictures come, where it may be another than the screen's.
+static void tell_pace(const struct show *show, const struct machine_view *view, const struct recorder *recorder,
+                      int64_t at_ns)
+{
+    char detail[96];
+    const struct pace *pace = &show->pace;
+    if (view->screen != MACHINE_STIMULUS || !view->trial_started || view->showing > 0 ||
+        view->trial->resolved->pace != PROTOCOL_PACE_COMMON)
+        return;
+    snprintf(detail, sizeof detail, "{\"hz\":%.9g,\"divisor\":%u,\"refresh_hz\":%.9g}",
+             pace->refresh_hz / pace->divisor, pace->divisor, pace->refresh_hz);
+    store_push_event(show->desc->store, &(struct store_event){.session_id = show->desc->ids->session_id,
+                                                              .segment_id = show->desc->ids->segment_id,
+                                                              .trial_id = recorder->trial_id,
+                                                              .at_ns = at_ns,
+                                                              .kind = "pace",
+                                                              .detail = detail});
+}
+
+bool show_text(struct show *show, const struct screen *screen)
+{
+    if (display_resized(show->desc->display))
+        renderer_resized(show->desc->renderer);
+    bool good = overlay_set(&show->overlay, screen) && renderer_show(show->desc->renderer, NULL, 1.0);
+    show->pace.present_ns = -1; // what comes next was not kept waiting by a frame
+    display_shown(show->desc->display);
+    return good;
 }
 
 bool show_frame(struct show *show, const struct machine_view *view, const struct screen_state *state,
@@ -296,26 +390,24 @@ bool show_frame(struct show *show, const struct machine_view *view, const struct
                 size_t error_size)
 {
     struct screen screen;
+    bool repeated = false;
     struct store_frame row = empty_row(show, view, recorder, start_ns);
-    struct renderer_option *option = NULL;
     bool visible = view->screen == MACHINE_STIMULUS && view->slot != PLAN_SLOT_NONE && view->fade < 1.0;
-    if (visible) {
+    tell_pace(show, view, recorder, start_ns);
+    if (visible)
         stage_adjust(show->desc->stage, view);
-        if (!draw_option(show, view, fovea, recorder, &row, error, error_size))
-            return false;
-        option = stage_option(show->desc->stage, view->slot);
-    }
+    if (visible && !make_picture(show, view, fovea, recorder, &row, &repeated, error, error_size))
+        return false;
     screen_of(view, state, &screen);
     if (display_resized(show->desc->display))
         renderer_resized(show->desc->renderer);
     if (view->screen == MACHINE_STIMULUS && view->trial_started)
         tell_spheres(show, view, recorder, start_ns);
-    if (!lay_marks(show, view, &row) || !overlay_set(&show->overlay, &screen) ||
-        !renderer_show(show->desc->renderer, option, visible ? view->fade : 1.0)) {
+    if (!lay_marks(show, view, &row) || !overlay_set(&show->overlay, &screen) || !put(show, view, visible)) {
         snprintf(error, error_size, "frame %llu could not be shown", (unsigned long long)show->number);
         return false;
     }
-    time_row(show, &row);
+    time_row(show, visible, repeated, &row);
     display_shown(show->desc->display);
     store_push_frame(show->desc->store, &row); // what does not fit is counted and reported by the store
     show->number++;

@@ -4,15 +4,18 @@
 
 #include "app/session/measure.h"
 #include "app/session/overlay.h"
+#include "app/session/pace.h"
+#include "app/session/playback.h"
 #include "app/session/record.h"
 #include "app/session/session.h"
 
 struct show {
     const struct session_desc *desc;
     struct overlay overlay;
-    struct measure *measure;         // NULL: errors are not measured
+    struct measure *measure;   // NULL: errors are not measured
+    struct playback *playback; // owned; NULL: nothing is prerendered
+    struct pace pace;
     uint64_t number;                 // of the next frame
-    int64_t last_present_ns;         // -1: none
     bool gaze_lost;                  // at the last frame that was drawn
     double frame_ms;                 // from the frame before to this one, as shown; NaN for the first
     bool late;                       // this one
@@ -31,6 +34,11 @@ void show_tell_submitted(const struct show *show);
 bool show_frame(struct show *show, const struct machine_view *view, const struct screen_state *state,
                 const struct fovea *fovea, const struct recorder *recorder, int64_t start_ns, char *error,
                 size_t error_size);
+
+// Where the fovea is in a frame that foveates a target; false: it does not, or there is none.
+bool show_target_fovea(const struct show *show, const struct machine_view *view, struct fovea_use *out);
+// As a frame of nothing but text, without a row of its own: for what the session waits for.
+bool show_text(struct show *show, const struct screen *screen);
 
 // What the measured frames say about the options of the running trial, as they are now: a staircase's level,
 // adjusted values. 0 where nothing was measured.

@@ -133,6 +133,7 @@ static void advance(struct machine *machine)
             machine->since_ns += confirm;
             course_go_on(machine, MACHINE_REST);
         }
+        return; // a rest lasts a frame at least, in which the next trial is made ready
     }
     if (machine->screen == MACHINE_REST &&
         machine_running(machine)->resolved->advance == PROTOCOL_ADVANCE_AUTO && machine_may_go_on(machine))

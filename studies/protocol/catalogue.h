@@ -5,6 +5,7 @@
 #ifndef STUDIES_PROTOCOL_CATALOGUE_H
 #define STUDIES_PROTOCOL_CATALOGUE_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 enum { CATALOGUE_PARAMETERS = 16, CATALOGUE_SETTINGS = 8 }; // at most, per mode and in all
@@ -22,6 +23,7 @@ struct catalogue_mode {
     const struct catalogue_parameter *parameters;
     uint32_t parameter_count;
     const char *about; // what it is, one sentence; NULL: none
+    bool foveated; // what it draws depends on the gaze
 };
 
 struct catalogue {

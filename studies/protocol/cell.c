@@ -152,13 +152,40 @@ static bool count_check(struct reader *reader, const struct yaml_node *node, con
     return true;
 }
 
+// What is rendered beforehand must be known beforehand: how long it is shown, and where it is sharp.
+static bool playback_check(struct reader *reader, const struct yaml_node *node,
+                           const struct protocol_block *block, const struct protocol_cell *cell)
+{
+    bool timed =
+        block->kind == PROTOCOL_SEQUENTIAL || block->kind == PROTOCOL_RATE || block->kind == PROTOCOL_TASK;
+    for (uint32_t i = 0; i < block->option_count; i++) {
+        const struct protocol_option *option = &cell->option[i];
+        const struct catalogue_mode *mode = &reader->catalogue->modes[option->mode];
+        if (option->playback != PROTOCOL_PRERENDERED)
+            continue;
+        if (!timed || cell->settings.view_ns == 0)
+            return read_fail(
+                reader, node,
+                "block '%s' shows the prerendered option '%s' for a time that is not known beforehand; "
+                "use a sequential, rate or task block with 'view_s', or 'playback: live'",
+                block->name, option->name);
+        if (mode->foveated && cell->settings.foveate == PROTOCOL_FOVEATE_GAZE)
+            return read_fail(
+                reader, node,
+                "block '%s' shows the prerendered option '%s', whose mode '%s' follows the gaze, which "
+                "is not known beforehand; set 'foveate: target', or 'playback: live'",
+                block->name, option->name, mode->name);
+    }
+    return true;
+}
+
 bool cell_check(struct reader *reader, const struct yaml_node *node, const struct protocol_block *block,
                 const struct protocol_cell *cell)
 {
     const struct protocol_settings *settings = &cell->settings;
     bool pair = protocol_kind_is_pair(block->kind);
     if (!question_check(reader, node, block, cell) || !count_check(reader, node, block, settings) ||
-        !timing_check(reader, node, block, settings))
+        !timing_check(reader, node, block, settings) || !playback_check(reader, node, block, cell))
         return false;
     if (settings->foveate == PROTOCOL_FOVEATE_TARGET && settings->fixation == PROTOCOL_FIXATION_FREE)
         return read_fail(

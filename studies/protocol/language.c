@@ -71,8 +71,10 @@ static const struct language_key option_keys[] = {
      .about = "One that `fovstudy modes` lists; its parameters may follow by name.",
      .example = "mode: time_warped"},
     {"playback", LANGUAGE_WORD, false, .words = WORDS("live", "prerendered"), .fallback = "live",
-     .about = "prerendered: its frames along the camera path are rendered before the trial and played at the "
-              "refresh rate, for options too slow to be live.",
+     .about =
+         "prerendered: its frames along the camera path are rendered before the trial and played at the "
+         "refresh rate, for options too slow to be live. Only where the time is known (view_s of sequential, "
+         "rate and task blocks) and where the gaze changes nothing (foveate: target, or no foveation).",
      .example = "playback: prerendered"},
     {0},
 };
@@ -94,9 +96,8 @@ static const struct language_key settings_keys[] = {
      .about = "key: the participant begins each trial; auto: it begins after rest_s.",
      .example = "advance: key"},
     {"pace", LANGUAGE_WORD, false, .words = WORDS("refuse", "common"), .fallback = "refuse",
-     .about =
-         "Where an option cannot hold the refresh rate: refuse the block, or show both options at the rate "
-         "that both hold.",
+     .about = "Where an option cannot hold the refresh rate: refuse the block, or show all its options at the "
+              "largest whole part of the refresh rate that all hold (90: 45, 30, 22.5 Hz ...).",
      .example = "pace: common"},
     {"fade", LANGUAGE_MAP, false, .of = "fade",
      .about = "The way from the last full image of one option to the first full image of the other.",

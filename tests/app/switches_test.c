@@ -1,8 +1,8 @@
 // What a switch costs: in the second after it no shown frame does more than half as much again as that option's
 // usual one. A whole session with long looks, drawn at a tiny size, judged from the study file by what was
-// done, which is the same on every machine, and by time only so far as a busy machine allows. Where the camera
-// stands still, work depends on little else than the switch, and the usual frame is the median; along a path it
-// is the largest.
+// done, which is the same on every machine, and by time only so far as a busy machine allows. Of triangles, and
+// of time, the usual frame is the median. Of pixels it is the largest outside those seconds: boxes of moving
+// objects take turns, so that every sixth frame may shade half as much again as the median, whenever it comes.
 #include "tests/app/command.h"
 
 #include <setjmp.h>

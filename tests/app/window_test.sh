@@ -48,7 +48,7 @@ press_until() {
 # Small eyes, for a software driver on a busy machine; large ones for the pictures.
 size=320x360 middle="160 180"
 [ -n "$shots" ] && size=640x720 middle="320 360"
-"$fovstudy" run "$source/studies/protocols/short.yaml" --db "$folder/study.db" --participant w1 --display window \
+"$fovstudy" run "$source/studies/protocols/short.yaml" --db "$folder/study.db" --participant w1 --display window --no-preflight \
     --size $size --scene atrium=town:triangles=20000 --gaze mouse --events "$folder/events" 2>"$folder/said" &
 program=$!
 : >"$folder/events"
@@ -131,7 +131,7 @@ expect "SELECT count(*) FROM frame WHERE present_ns < start_ns" 0
 expect "SELECT count(*) > 5 AND max(abs(x_deg)) < 0.5 AND max(abs(y_deg)) < 0.5 FROM gaze WHERE valid" 1
 
 # Another participant ends at the consent screen: asked once, then aborted, nothing of the first one touched.
-"$fovstudy" run "$source/studies/protocols/short.yaml" --db "$folder/study.db" --participant w2 --display window \
+"$fovstudy" run "$source/studies/protocols/short.yaml" --db "$folder/study.db" --participant w2 --display window --no-preflight \
     --size 320x360 --scene atrium=town:triangles=20000 --gaze mouse 2>"$folder/said" &
 program=$!
 sleep 2

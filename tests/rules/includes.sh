@@ -40,6 +40,7 @@ BEGIN {
     only["meshoptimizer.h"] = "stimuli/"
     only["stb"] = "stimuli/ app/"
     only["libfyaml.h"] = "studies/protocol/"
+    only["lz4.h"] = "app/session/"
     only["Rmath.h"] = "analysis/stats/"
 }
 {

@@ -345,6 +345,7 @@ const struct mode mode_time_warped = {
     .source = "Franke et al. 2021, Time-Warped Foveated Rendering for Virtual Reality Headsets",
     .parameters = parameters,
     .parameter_count = countof(parameters),
+    .foveated = true,
     .supported = supported,
     .agree = agree,
     .create = create,

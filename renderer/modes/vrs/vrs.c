@@ -178,6 +178,7 @@ const struct mode mode_vrs = {
     .source = "Patney et al. 2016, Towards Foveated Rendering for Gaze-Tracked Virtual Reality",
     .parameters = parameters,
     .parameter_count = countof(parameters),
+    .foveated = true,
     .supported = supported,
     .agree = agree,
     .create = create,

@@ -17,8 +17,8 @@ static inline const struct catalogue *sample_catalogue(void)
         {"dynamic_objects", "", 0, 1, 0, dynamic, 0},
         {"splat", "", 0, 1, 0, splat, 0},
     };
-    static const struct catalogue_mode modes[] = {{"regular", 0, 0, "every pixel"},
-                                                  {"time_warped", time_warped, 6, 0}};
+    static const struct catalogue_mode modes[] = {{"regular", 0, 0, "every pixel", false},
+                                                  {"time_warped", time_warped, 6, 0, true}};
     static const char *const scenes[] = {"atrium", "town", "yard"};
     static const struct catalogue_parameter settings[] = {{"moving_objects", "", 0, 1, 0, switched, 0}};
     static const char *const missing[] = {"ray_traced", 0};

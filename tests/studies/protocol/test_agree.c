@@ -100,10 +100,12 @@ static void test_blocks(void **state)
         {SETTINGS BLOCK "  break_s: 20\n", "p:19:3: block 'main' has no breaks; set 'break_every' too"},
         {SETTINGS BLOCK "  trials: [{role: practice}, {role: null}]\n",
          "p:16:3: block 'main' has no trial that an analysis counts: all are practice, catch or null"},
-        {SETTINGS BLOCK "  factors:\n    epsilon: [0.1, 0.3]\n    which: {options: [foveated]}\n",
+        {SETTINGS BLOCK "  factors:\n    epsilon: [0.1, 0.3]\n    which: {levels: {x: {parameters: {foveated: "
+                        "{epsilon: 0.2}}}}}\n",
          "p:20:5: levels 0.1 and 0.3 of 'epsilon' show the same in block 'main'; does a factor after it "
          "replace the "
          "option that it changes?"},
+        {SETTINGS BLOCK "  factors:\n    epsilon: [0.1, 0.3]\n    which: {options: [foveated]}\n", ""},
         {SETTINGS BLOCK "  factors:\n    which: {options: [foveated]}\n    epsilon: [0.1, 0.3]\n", ""},
         {"settings: {question: prefer, view_s: 20, deadline_s: 5}\n" BLOCK,
          "p:16:3: block 'main' ends a trial after 5 s (deadline_s), before its view_s of 20 s; raise the one "

@@ -106,6 +106,49 @@ static void test_the_good_file_is_good(void **state)
     keep(good, "");
 }
 
+// What is rendered beforehand must be known beforehand: for how long, and where it is sharp.
+static void test_prerendered(void **state)
+{
+    (void)state;
+    const struct bad cases[] = {
+        {"", "{mode: regular}", "{mode: regular, playback: prerendered}",
+         "p.yaml:21:5: block 'before' shows the prerendered option 'regular' for a time that is not known "
+         "beforehand; "
+         "use a sequential, rate or task block with 'view_s', or 'playback: live'"},
+        {"settings", "camera: path", "view_s: 3", ""},
+        {"", "epsilon: 0.1}", "epsilon: 0.1, playback: prerendered}",
+         "p.yaml:21:5: block 'before' shows the prerendered option 'foveated' for a time that is not known "
+         "beforehand; "
+         "use a sequential, rate or task block with 'view_s', or 'playback: live'"},
+    };
+    expect_all(cases, sizeof cases / sizeof cases[0]);
+    static const char format[] =
+        "fovstudy: 1\nname: p\ntitle: P\nseed: 7\nscenes: [town]\noptions:\n"
+        "  foveated: {mode: time_warped, playback: prerendered}\n  regular: {mode: regular}\n"
+        "reference: regular\nquestions: {prefer: {text: Which?}}\ninstructions: Look.\n"
+        "consent: {version: 1, text: Agree?}\nsettings: {view_s: 3, question: prefer%s}\n"
+        "blocks: [{name: one, kind: %s, options: [foveated, regular]}]\n";
+    static const struct {
+        const char *settings, *kind, *sentence;
+    } files[] = {
+        {"", "sequential",
+         "p.yaml:14:10: block 'one' shows the prerendered option 'foveated', whose mode 'time_warped' follows "
+         "the gaze, "
+         "which is not known beforehand; set 'foveate: target', or 'playback: live'"},
+        {", fixation: moving, foveate: target", "sequential", ""},
+        {", fixation: cross, foveate: target", "sequential", ""},
+        {", fixation: cross, foveate: target", "toggle",
+         "p.yaml:14:10: block 'one' shows the prerendered option 'foveated' for a time that is not known "
+         "beforehand; "
+         "use a sequential, rate or task block with 'view_s', or 'playback: live'"},
+    };
+    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
+        char text[2048];
+        int size = snprintf(text, sizeof text, format, files[i].settings, files[i].kind);
+        expect(text, (size_t)size, files[i].sentence);
+    }
+}
+
 static void test_names(void **state)
 {
     (void)state;
@@ -349,6 +392,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_the_good_file_is_good),
         cmocka_unit_test(test_names),
+        cmocka_unit_test(test_prerendered),
         cmocka_unit_test(test_values),
         cmocka_unit_test(test_structure),
         cmocka_unit_test(test_yaml),
