@@ -51,12 +51,10 @@ static enum ready_result fly(struct ready *ready, struct show *show, const struc
         return READY_DONE;
     switch (preflight_block(show, view->trial->block, at_ns, divisor, error, error_size)) {
     case PREFLIGHT_PASSED:
-        return stage_prepare(show->desc->stage, view, error, error_size) ? READY_DONE
-                                                                                      : READY_FAILED;
+        return stage_prepare(show->desc->stage, view, error, error_size) ? READY_DONE : READY_FAILED;
     case PREFLIGHT_STOPPED:
         *divisor = 0;
-        return stage_prepare(show->desc->stage, view, error, error_size) ? READY_STOPPED
-                                                                                      : READY_FAILED;
+        return stage_prepare(show->desc->stage, view, error, error_size) ? READY_STOPPED : READY_FAILED;
     case PREFLIGHT_CLOSED:
         return READY_CLOSED;
     default:
