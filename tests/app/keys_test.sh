@@ -55,8 +55,8 @@ regions)
 esac
 
 # shellcheck disable=SC2086
-"$fovstudy" run "$protocol" --db "$folder/study.db" --participant k1 --display window --size 128x144 $scenes --gaze mouse \
-    --no-preflight --events "$folder/events" 2>"$folder/said" &
+"$fovstudy" run "$protocol" --db "$folder/study.db" --participant k1 --display window --size 128x144 $scenes \
+    --gaze mouse --no-preflight --events "$folder/events" 2>"$folder/said" &
 program=$!
 tries=0
 until [ "$(xdotool search --name '^fovstudy$' 2>/dev/null | wc -l)" -ge 1 ] || [ $tries -gt 120 ]; do

@@ -132,6 +132,14 @@ static struct machine_view view_of(const struct rig *rig, uint32_t trial, int sl
                                  .stimulus_ns = (int64_t)number * (1000000000 / RATE)};
 }
 
+static struct machine_view rest_before(const struct rig *rig, uint32_t trial)
+{
+    struct machine_view view = view_of(rig, trial, 0, 0);
+    view.screen = MACHINE_REST;
+    view.attempt = 0;
+    return view;
+}
+
 static void read_screen(const struct rig *rig, uint8_t *out[EYES])
 {
     for (int eye = 0; eye < EYES; eye++) {
@@ -148,8 +156,7 @@ static double fade_at(uint32_t number)
 static void draw_live(struct rig *rig, int slot, uint32_t frames)
 {
     char error[512];
-    struct machine_view at_rest = view_of(rig, 0, slot, 0);
-    at_rest.screen = MACHINE_REST;
+    struct machine_view at_rest = rest_before(rig, 0);
     assert_true(stage_prepare(rig->stage, &at_rest, error, sizeof error));
     for (uint32_t i = 0; i < frames; i++) {
         struct pose head;
@@ -167,8 +174,7 @@ static void prepare(struct rig *rig, uint32_t trial)
 {
     char error[512] = "";
     double done = 0.0, before = -1.0;
-    struct machine_view view = view_of(rig, trial, 0, 0);
-    view.screen = MACHINE_REST;
+    struct machine_view view = rest_before(rig, trial);
     assert_true(stage_prepare(rig->stage, &view, error, sizeof error));
     while (done < 1.0) { // a frame at a time
         if (!playback_prepare(rig->playback, &view, RATE, 0.0, &done, error, sizeof error))
@@ -292,7 +298,7 @@ static void what_does_not_fit_is_refused(void **state)
     playback_destroy(rig.playback);
     open_playback(&rig, 50000);
     struct machine_view view = view_of(&rig, 0, 0, 0);
-    assert_true(stage_prepare(rig.stage, 0, error, sizeof error));
+    assert_true(stage_prepare(rig.stage, &view, error, sizeof error));
     assert_false(playback_prepare(rig.playback, &view, RATE, 60.0, &done, error, sizeof error));
     print_message("%s\n", error);
     assert_non_null(strstr(error, "prerendered pictures of an option in trial 1 need about "));
