@@ -23,7 +23,7 @@ struct catalogue_mode {
     const struct catalogue_parameter *parameters;
     uint32_t parameter_count;
     const char *about; // what it is, one sentence; NULL: none
-    bool foveated; // what it draws depends on the gaze
+    bool foveated;     // what it draws depends on the gaze
 };
 
 struct catalogue {

@@ -68,6 +68,9 @@ static const struct host {
     {&language_scene, "stand_in", "scenes", "scenes:\n  - name: hall\n    %s"},
     {&language_scene, "labels", "scenes", "scenes:\n  - name: atrium\n    %s"},
     {&language_option, "mode", "options", "options:\n  regular: {mode: regular}\n  foveated:\n    %s"},
+    {&language_option, "playback", "options",
+     "options:\n  regular: {mode: regular}\n  foveated: {mode: time_warped}\n  slow:\n    mode: regular\n    "
+     "%s"},
     {&language_option, NULL, "options",
      "options:\n  regular: {mode: regular}\n  foveated:\n    mode: time_warped\n    %s"},
     {&language_settings, "foveate", "settings", "settings:\n  question: prefer\n  fixation: cross\n  %s"},
