@@ -118,7 +118,37 @@ static void add_gap(struct flow *flow)
         flow->y += 0.5 * font_line_px(flow->layout->fonts[TEXT_BODY]);
 }
 
-// One line of numbers spread over the panel, the meanings of the ends below it.
+// How many numbers a line takes, so that they stay apart; lines are filled evenly.
+static int scale_columns(const struct flow *flow, const struct text_screen *screen)
+{
+    const struct font *font = flow->layout->fonts[TEXT_BODY];
+    int count = screen->scale_max - screen->scale_min + 1;
+    char low[16], high[16];
+    snprintf(low, sizeof low, "%d", screen->scale_min);
+    snprintf(high, sizeof high, "%d", screen->scale_max);
+    double widest = fmax(font_width_px(font, low, strlen(low)), font_width_px(font, high, strlen(high)));
+    double cell = widest + 1.5 * font_width_px(font, "0", 1);
+    int most = (int)((flow->room_x - 2.0 * flow->margin) / cell);
+    most = most < 1 ? 1 : most;
+    int lines = (count + most - 1) / most;
+    return (count + lines - 1) / lines;
+}
+
+static void add_ends(struct flow *flow, const struct text_screen *screen)
+{
+    struct text_layout *layout = flow->layout;
+    const char *low = screen->scale_low ? screen->scale_low : "",
+               *high = screen->scale_high ? screen->scale_high : "";
+    double width = font_width_px(layout->fonts[TEXT_HINT], high, strlen(high));
+    add_run(flow, (struct text_run){.text = low, .bytes = strlen(low), .style = TEXT_HINT, .x = flow->margin});
+    add_run(flow, (struct text_run){.text = high,
+                                    .bytes = strlen(high),
+                                    .style = TEXT_HINT,
+                                    .x = flow->room_x - flow->margin - width});
+    flow->y += font_line_px(layout->fonts[TEXT_BODY]);
+}
+
+// Numbers spread over the panel, the meanings of the ends below them.
 static void add_scale(struct flow *flow, const struct text_screen *screen)
 {
     struct text_layout *layout = flow->layout;
@@ -127,32 +157,25 @@ static void add_scale(struct flow *flow, const struct text_screen *screen)
         return;
     double line = font_line_px(layout->fonts[TEXT_BODY]);
     bool ends = screen->scale_low || screen->scale_high;
-    if (flow->y + (ends ? 2.2 : 1.0) * line > flow->bottom && flow->y > flow->margin)
+    int columns = scale_columns(flow, screen), lines = (count + columns - 1) / columns;
+    if (flow->y + (1.2 * lines + (ends ? 1.0 : -0.2)) * line > flow->bottom && flow->y > flow->margin)
         end_page(flow);
-    double room = flow->room_x - 2.0 * flow->margin, cell = room / count;
+    double cell = (flow->room_x - 2.0 * flow->margin) / columns;
     for (int i = 0; i < count; i++) {
         char *number = layout->numbers[i];
         snprintf(number, sizeof layout->numbers[i], "%d", screen->scale_min + i);
         double width = font_width_px(layout->fonts[TEXT_BODY], number, strlen(number));
+        if (i > 0 && i % columns == 0)
+            flow->y += 1.2 * line;
         add_run(flow, (struct text_run){.text = number,
                                         .bytes = strlen(number),
                                         .style = TEXT_BODY,
                                         .marked = screen->scale_min + i == screen->scale_selected,
-                                        .x = flow->margin + cell * (i + 0.5) - width / 2});
+                                        .x = flow->margin + cell * (i % columns + 0.5) - width / 2});
     }
     flow->y += 1.2 * line;
-    if (ends) {
-        const char *low = screen->scale_low ? screen->scale_low : "",
-                   *high = screen->scale_high ? screen->scale_high : "";
-        double width = font_width_px(layout->fonts[TEXT_HINT], high, strlen(high));
-        add_run(flow,
-                (struct text_run){.text = low, .bytes = strlen(low), .style = TEXT_HINT, .x = flow->margin});
-        add_run(flow, (struct text_run){.text = high,
-                                        .bytes = strlen(high),
-                                        .style = TEXT_HINT,
-                                        .x = flow->room_x - flow->margin - width});
-        flow->y += line;
-    }
+    if (ends)
+        add_ends(flow, screen);
 }
 
 static void destroy_fonts(struct text_layout *layout)

@@ -42,7 +42,11 @@ static enum keyboard_meaning rate(struct keyboard *keyboard, const struct machin
 {
     int32_t low = view->question->scale_min, high = view->question->scale_max;
     int number = digit(key);
-    if (number == 0 && low > 0 && high >= 10)
+    bool more = keyboard->selecting && keyboard->typed && view->question->type == PROTOCOL_ASK_COUNT;
+    keyboard->typed = number >= 0;
+    if (number >= 0 && more && keyboard->selected * 10 + number <= high)
+        number += keyboard->selected * 10; // a count of several digits
+    else if (number == 0 && low > 0 && high >= 10)
         number = 10;
     if (number >= low && number <= high && number >= 0)
         return select_rating(keyboard, number);

@@ -18,6 +18,7 @@ struct keyboard {
     enum plan_slot subject;
     bool selecting;
     int32_t selected; // meaningful while selecting
+    bool typed;       // by digits, to which more may be added
 };
 
 enum keyboard_meaning {

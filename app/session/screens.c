@@ -83,7 +83,7 @@ static void before_trial(const struct machine_view *view, struct screen *out)
                  where_to_look(trial), count);
     else if (protocol_kind_is_pair(trial->kind))
         snprintf(out->body, sizeof out->body, "%s%s%s%s\n%s comes first.",
-                 trial->question ? trial->question->text : "", free_look ? "" : "\n",
+                 trial->question ? trial->question->text : "Make A and B look the same.", free_look ? "" : "\n",
                  free_look ? "" : where_to_look(trial), count, trial->first_shown == PLAN_SLOT_B ? "B" : "A");
     else
         snprintf(out->body, sizeof out->body, "%s%s", where_to_look(trial), count);

@@ -132,6 +132,21 @@ static void ratings_are_marked_then_confirmed(void **state)
     assert_int_equal(keyboard_selected(&keyboard, &view), 1);
 }
 
+static void a_count_may_have_several_digits(void **state)
+{
+    (void)state;
+    static const struct protocol_question twenty = {
+        .type = PROTOCOL_ASK_COUNT, .scale_min = 0, .scale_max = 20};
+    struct keyboard keyboard = {0};
+    struct machine_view view = {.screen = MACHINE_QUESTION, .trial = &rate_trial, .question = &twenty};
+    assert_int_equal(press(&keyboard, &view, GLFW_KEY_1), 1);
+    assert_int_equal(press(&keyboard, &view, GLFW_KEY_7), 17);
+    assert_int_equal(press(&keyboard, &view, GLFW_KEY_3), 3); // 173 are too many: a new number
+    assert_int_equal(press(&keyboard, &view, GLFW_KEY_RIGHT), 4);
+    assert_int_equal(press(&keyboard, &view, GLFW_KEY_2), 2); // not 42, nor after an arrow
+    assert_int_equal(press(&keyboard, &view, GLFW_KEY_0), 20);
+}
+
 static void a_mark_does_not_live_on_to_the_next_question(void **state)
 {
     (void)state;
@@ -166,6 +181,7 @@ int main(void)
         cmocka_unit_test(pause_and_abort_keys),
         cmocka_unit_test(reading_keys),
         cmocka_unit_test(ratings_are_marked_then_confirmed),
+        cmocka_unit_test(a_count_may_have_several_digits),
         cmocka_unit_test(a_mark_does_not_live_on_to_the_next_question),
         cmocka_unit_test(a_scale_around_zero_works),
     };

@@ -1,6 +1,7 @@
 // The participant's screens: they fit, in both eyes, at every size, and are large enough to read.
 #include "app/display/font.h"
 #include "app/display/text.h"
+#include "app/display/text_layout.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -171,6 +172,38 @@ static void the_marked_number_stands_out(void **state)
     text_image_finish(&plain);
 }
 
+// However many numbers a scale has, on every size of eye: in lines, apart, and inside the panel.
+static void numbers_of_a_scale_stay_apart(void **state)
+{
+    (void)state;
+    static const uint32_t sizes[][2] = {{1280, 1440}, {640, 720}, {320, 360}};
+    static const int ends[][2] = {{-3, 3}, {1, 10}, {0, 20}, {-10, 10}, {0, 60}};
+    for (size_t s = 0; s < 3; s++) {
+        for (size_t e = 0; e < 5; e++) {
+            struct text_view view = view_of(sizes[s][0], sizes[s][1]);
+            struct text_screen screen = {.body = "How many?", .scale_min = ends[e][0], .scale_max = ends[e][1]};
+            struct text_layout layout;
+            assert_true(text_layout_init(&layout, &view, &screen));
+            double space = font_width_px(layout.fonts[TEXT_BODY], "0", 1);
+            size_t numbers = 0;
+            for (size_t i = 0; i < layout.run_count; i++) {
+                const struct text_run *run = &layout.runs[i];
+                if (run->text < layout.numbers[0] || run->text >= layout.numbers[64])
+                    continue;
+                numbers++;
+                assert_true(run->x >= 0 && run->x + run->width <= layout.width);
+                for (size_t k = 0; k < i; k++) {
+                    const struct text_run *other = &layout.runs[k];
+                    if (other->page == run->page && fabs(other->top - run->top) < 1)
+                        assert_true(run->x >= other->x + other->width + space);
+                }
+            }
+            assert_int_equal(numbers, ends[e][1] - ends[e][0] + 1);
+            text_layout_finish(&layout);
+        }
+    }
+}
+
 static void odd_text_is_drawn_without_harm(void **state)
 {
     (void)state;
@@ -203,6 +236,7 @@ int main(void)
         cmocka_unit_test(the_font_has_the_size_asked_for),
         cmocka_unit_test(long_texts_become_pages_that_lose_nothing),
         cmocka_unit_test(the_marked_number_stands_out),
+        cmocka_unit_test(numbers_of_a_scale_stay_apart),
         cmocka_unit_test(odd_text_is_drawn_without_harm),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
