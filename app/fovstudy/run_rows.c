@@ -22,7 +22,7 @@ bool run_rows_plan(struct run_rows *rows, const struct protocol *protocol, uint6
 }
 
 // Before anything is written or shown; store_create_session holds to it as well.
-static bool code_is_free(struct run_rows *rows, const struct run_options *options, char *error,
+static bool code_is_free(struct run_rows *rows, const struct run_options *options, bool several, char *error,
                          size_t error_size)
 {
     struct store_error why;
@@ -31,7 +31,7 @@ static bool code_is_free(struct run_rows *rows, const struct run_options *option
         snprintf(error, error_size, "%s", why.text);
         return false;
     }
-    if (count == 0 || options->again)
+    if (count == 0 || options->again || (several && !unfinished))
         return true;
     int used = snprintf(
         error, error_size,
@@ -52,7 +52,7 @@ bool run_rows_open(struct run_rows *rows, const struct run_options *options, con
     *rows = (struct run_rows){0};
     rows->store = store_open(&(struct store_desc){.path = options->database, .access = STORE_CREATE}, &why);
     int64_t wanted = options->has_number ? (int64_t)options->number : 0;
-    if (rows->store && !code_is_free(rows, options, error, error_size))
+    if (rows->store && !code_is_free(rows, options, study->protocol->several_sessions, error, error_size))
         return false;
     if (!rows->store ||
         store_participant_number(rows->store, options->participant, wanted, &number, &why) != STORE_OK) {
@@ -182,7 +182,7 @@ static struct store_session describe(const struct run_options *options, const st
         .width_px = display ? display->width : 0,
         .height_px = display ? display->height : 0,
         .fov_deg = display ? options->fov_deg : 0.0,
-        .again = options->again,
+        .again = options->again || study->protocol->several_sessions,
         .condition_count = rows->plan->condition_count,
         .trial_count = rows->plan->trial_count,
     };

@@ -73,6 +73,28 @@ static void a_read_only_file_is_refused(void **state)
     command("chattr -i '%s/ro.db'", folder);
 }
 
+// A protocol of several sittings takes a code again, unless the last one is unfinished.
+static void a_protocol_may_have_several_sessions(void **state)
+{
+    (void)state;
+    const char *run = "fovstudy run '%s/several.yaml' --participant p --display none --observer "
+                      "sim:errors='%s/errors.csv' --db '%s/several.db'";
+    assert_int_equal(command("sed 's/^seed: 1$/seed: 1\\nsessions: several/' '" SOURCE_DIR
+                             "/studies/protocols/short.yaml' > '%s/several.yaml'",
+                             folder)
+                         ->status,
+                     0);
+    assert_int_equal(command(run, folder, folder, folder)->status, 0);
+    assert_int_equal(command(run, folder, folder, folder)->status, 0);
+    assert_string_equal(
+        command("sqlite3 '%s/several.db' 'SELECT count(*), count(DISTINCT participant_id) FROM session'",
+                folder)
+            ->out,
+        "2|1\n");
+    command("sqlite3 '%s/several.db' \"UPDATE session SET status = 'running' WHERE id = 2\"", folder);
+    expect(command(run, folder, folder, folder), "session 2 is unfinished: fovstudy resume");
+}
+
 static void a_code_has_one_session(void **state)
 {
     (void)state;
@@ -315,6 +337,7 @@ int main(void)
         cmocka_unit_test(other_files_are_refused_untouched),
         cmocka_unit_test(a_read_only_file_is_refused),
         cmocka_unit_test(a_code_has_one_session),
+        cmocka_unit_test(a_protocol_may_have_several_sessions),
         cmocka_unit_test(people_and_simulated_observers_never_share_a_file),
         cmocka_unit_test(a_newer_study_is_refused),
         cmocka_unit_test(two_programs_never_share_a_study),
