@@ -5,25 +5,8 @@
 # Exit 77 where Xvfb, xdotool or a Vulkan device is missing.
 set -u
 fovstudy=$1 source=$2 folder=$3 study=$4 extent=${5:-part}
-for tool in Xvfb xdotool sqlite3; do
-    command -v $tool >/dev/null || { echo "no $tool"; exit 77; }
-done
-"$fovstudy" devices >/dev/null 2>&1 || { echo "no Vulkan device"; exit 77; }
-
-rm -rf "$folder"
-mkdir -p "$folder"
-Xvfb -displayfd 3 -screen 0 640x480x24 -nolisten tcp -noreset 3>"$folder/display" 2>/dev/null &
-server=$!
-program=
-trap 'kill $program $server 2>/dev/null' EXIT
-tries=0
-until [ -s "$folder/display" ]; do
-    tries=$((tries + 1))
-    [ $tries -gt 100 ] && { echo "Xvfb did not start"; exit 1; }
-    sleep 0.1
-done
-DISPLAY=:$(cat "$folder/display")
-export DISPLAY
+screen=640x480
+. "$(dirname "$0")/window.sh"
 
 fail() {
     echo "keys test: $1"

@@ -4,25 +4,8 @@
 # Exit 77 where Xvfb, xdotool or a Vulkan device is missing.
 set -u
 fovstudy=$1 source=$2 folder=$3 shots=${4:-}
-for tool in Xvfb xdotool sqlite3; do
-    command -v $tool >/dev/null || { echo "no $tool"; exit 77; }
-done
-"$fovstudy" devices >/dev/null 2>&1 || { echo "no Vulkan device"; exit 77; }
-
-rm -rf "$folder"
-mkdir -p "$folder"
-Xvfb -displayfd 3 -screen 0 1280x720x24 -nolisten tcp -noreset 3>"$folder/display" 2>/dev/null &
-server=$!
-program=
-trap 'kill $program $server 2>/dev/null' EXIT
-tries=0
-until [ -s "$folder/display" ]; do
-    tries=$((tries + 1))
-    [ $tries -gt 100 ] && { echo "Xvfb did not start"; exit 1; }
-    sleep 0.1
-done
-DISPLAY=:$(cat "$folder/display")
-export DISPLAY
+screen=1280x720
+. "$(dirname "$0")/window.sh"
 
 fail() {
     echo "window test: $1"
