@@ -33,7 +33,7 @@ static const char protocol[] =
     "  - name: one\n"
     "    kind: adjust\n"
     "    options: [warped, regular]\n"
-    "    adjust: {epsilon: {start: [0.5, 0.5], step: 0.05}, fovea_deg: {start: [10, 10], step: 15}}\n"
+    "    adjust: {epsilon: {start: [0.5, 0.5], step: 0.05}, fovea_deg: {start: [10, 10], step: 15, max: 29}}\n"
     "  - name: two\n"
     "    kind: staircase\n"
     "    options: [warped, regular]\n"
@@ -181,23 +181,21 @@ static void an_adjusted_value_is_drawn(struct rig *rig)
     event(rig, MACHINE_ADJUST, -6);
     frames(rig, 1);
     expect_effective(rig, NULL); // as the condition
-    // A fovea wider than the periphery is no option: what was there stays.
+    // Up to the end of its range, beyond which the mode would refuse it.
     event(rig, MACHINE_ADJUST_NEXT, 1);
     event(rig, MACHINE_ADJUST, 1);
     frames(rig, 1);
     expect_effective(rig, "{\"fovea_deg\":25}");
     event(rig, MACHINE_ADJUST, 1);
     frames(rig, 1);
-    expect_effective(rig, "{\"fovea_deg\":25}");
-    event(rig, MACHINE_ADJUST, -2);
+    expect_effective(rig, "{\"fovea_deg\":29}");
+    event(rig, MACHINE_ADJUST_NEXT, 1);
     frames(rig, 1);
-    expect_effective(rig, NULL);
     // What is changed while the other is looked at is there when it comes back.
     show_slot(rig, (enum plan_slot)(1 - (int)tested));
-    event(rig, MACHINE_ADJUST_NEXT, 1);
     event(rig, MACHINE_ADJUST, 1);
     show_slot(rig, tested);
-    expect_effective(rig, "{\"epsilon\":0.15}");
+    expect_effective(rig, "{\"epsilon\":0.15,\"fovea_deg\":29}");
 }
 
 // Each trial of it begins with the level that the answers before it lead to, ready before it starts.
