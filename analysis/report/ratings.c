@@ -96,6 +96,10 @@ static bool add_rating(void *user, const struct store_rating_row *row)
         r->excluded++;
         return true;
     }
+    if (!*row->order) { // of no rate block with a complement: nothing says what it would be paired with
+        r->more++;
+        return true;
+    }
     size_t question = find_question(f, row);
     if (question == SAMPLE_NONE)
         return false;

@@ -1,9 +1,10 @@
 // Two ratings per person, in two orders: the comparison of Franke 2021, section 8.2.
 //
-// Of each question, every session's first two ratings of different conditions make a pair. Sessions are grouped
-// by which condition came first. First ratings are compared between the two groups by Welch's t-test (what
-// people say before they have learned to see a difference); second minus first is tested within each group by a
-// paired t-test. The two groups are never pooled: their differences have opposite meanings and would cancel.
+// Of each question, the two ratings of different conditions that a rate block and its complement ask make a
+// pair. Sessions are grouped by which condition came first. First ratings are compared between the two groups
+// by Welch's t-test (what people say before they have learned to see a difference); second minus first is
+// tested within each group by a paired t-test. The two groups are never pooled: their differences have opposite
+// meanings and would cancel.
 #ifndef ANALYSIS_REPORT_RATINGS_H
 #define ANALYSIS_REPORT_RATINGS_H
 

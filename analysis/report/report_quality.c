@@ -157,7 +157,7 @@ static void left_out(const struct report *r)
     count_item(r, t->excluded, "ratings in excluded trials");
     count_item(r, t->not_done, "ratings in trials that are not done");
     count_item(r, t->no_condition, "ratings that belong to no option");
-    count_item(r, t->more, "ratings after a session\u2019s first two");
+    count_item(r, t->more, "ratings of no before-and-after pair");
     fputs(all ? "</ul>\n" : "", r->out);
 }
 

@@ -71,7 +71,7 @@ static void print_notes(const struct sample *sample, const struct ratings *r)
     if (r->no_condition)
         printf("Left out, ratings that belong to no option: %" PRId64 ".\n", r->no_condition);
     if (r->more)
-        printf("Left out, ratings after a session's first two: %" PRId64 ".\n", r->more);
+        printf("Left out, ratings of no before-and-after pair: %" PRId64 ".\n", r->more);
 }
 
 static void ttest_json(struct json *json, const char *key, const struct stat_ttest *t)
@@ -127,7 +127,7 @@ static void print_json(const struct sample *sample, const struct ratings *r)
     json_integer(&json, "excluded", r->excluded);
     json_integer(&json, "not_done", r->not_done);
     json_integer(&json, "no_option", r->no_condition);
-    json_integer(&json, "after_the_second", r->more);
+    json_integer(&json, "unpaired_by_design", r->more);
     json_close(&json, '}');
     json_close(&json, '}');
     putchar('\n');

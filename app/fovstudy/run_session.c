@@ -71,7 +71,7 @@ bool run_find_errors(struct run *run, char *error, size_t error_size)
 
 bool run_open_gaze(struct run *run, int64_t segments, char *error, size_t error_size)
 {
-    uint64_t seed = run->rows.plan->seed * 1000003u + run->rows.plan->number;
+    uint64_t seed = run->rows.plan->seed * 1000003u + observer_subject(run->options.participant);
     seed +=
         (uint64_t)segments * 0x9e3779b97f4a7c15u; // 2^64 over the golden ratio: far from other participants'
     return run_view_gaze(&run->view, &run->options, seed, error, error_size);
@@ -86,8 +86,15 @@ static void say(void *user, const char *sentence)
         fprintf(stderr, "%sfovstudy: %s\n", isatty(STDERR_FILENO) ? "\r\033[K" : "", sentence);
 }
 
-static void note_unblind(const struct run *run)
+static void note_options(const struct run *run)
 {
+    if (run->options.again)
+        store_push_event(run->rows.store,
+                         &(struct store_event){.session_id = run->rows.ids.session_id,
+                                               .segment_id = run->rows.ids.segment_id,
+                                               .at_ns = 0,
+                                               .kind = "again",
+                                               .detail = "--again: a further session was asked for"});
     if (run->options.unblind)
         store_push_event(run->rows.store,
                          &(struct store_event){.session_id = run->rows.ids.session_id,
@@ -127,6 +134,7 @@ enum session_result run_go(struct run *run, const struct machine_start *start, c
         .ipd_m = VIEWING_DEFAULT_IPD_M,
         .gaze = run->view.gaze,
         .observer = options->observer ? &run->study.observer : NULL,
+        .observer_subject = observer_subject(options->participant),
         .errors = &run->errors,
         .step_hz = run_step_hz(options),
         .progress = progress,
@@ -149,7 +157,7 @@ enum session_result run_go(struct run *run, const struct machine_start *start, c
                                       .has_gaze = run->view.gaze != NULL,
                                       .unblind = options->unblind});
     signal(SIGPIPE, SIG_IGN); // a reader of the events that goes away is told in a sentence
-    note_unblind(run);
+    note_options(run);
     struct store_error why;
     if (options->observer && store_rehearse(run->rows.store, &why) != STORE_OK) {
         snprintf(error, error_size, "%s", why.text);

@@ -466,7 +466,7 @@ enum session_result session_run(const struct session_desc *desc, char *error, si
         return SESSION_FAILED;
     store_set_busy(desc->store, STORE_BUSY_MS);
     if (desc->observer)
-        observer_start(&loop.observer, desc->observer, desc->plan->seed, desc->plan->number);
+        observer_start(&loop.observer, desc->observer, desc->plan->seed, desc->observer_subject);
     loop.recorder.machine = loop.machine;
     uint32_t places = desc->plan->trial_count + (desc->start ? desc->start->repeat_count : 0);
     bool good = recorder_init(&loop.recorder, places) && (!desc->display || show_init(&loop.show, desc)) &&

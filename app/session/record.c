@@ -141,6 +141,18 @@ static void forget_trial(struct recorder *recorder)
     recorder->level_condition = 0;
 }
 
+static void push_event(struct recorder *recorder, const struct machine_record *record, const char *detail)
+{
+    bool in_trial = record->trial != UINT32_MAX;
+    store_push_event(recorder->store,
+                     &(struct store_event){.session_id = recorder->ids->session_id,
+                                           .segment_id = recorder->ids->segment_id,
+                                           .trial_id = in_trial ? recorder->trial_ids[record->trial] : 0,
+                                           .at_ns = record->at_ns,
+                                           .kind = machine_record_name(record->kind),
+                                           .detail = detail});
+}
+
 // Invalid and planned again in one transaction; the new row's id is kept for its place.
 static enum store_result end_invalid(struct recorder *recorder, const struct machine_record *record,
                                      struct store_error *why)
@@ -165,6 +177,7 @@ static enum store_result end_invalid(struct recorder *recorder, const struct mac
         recorder->trial_ids[record->again] = again;
     if (id == recorder->trial_id)
         forget_trial(recorder);
+    push_event(recorder, record, record->late ? "{\"reason\":\"late\"}" : "{\"reason\":\"flagged\"}");
     set_line(recorder, "invalid", "\"trial\":%" PRIu32 ",\"reason\":\"%s\",\"again\":%" PRIu32,
              record->trial + 1, record->late ? "late" : "flagged", repeats ? record->again + 1 : 0);
     return STORE_OK;
@@ -298,18 +311,6 @@ static enum store_result push_exposure(struct recorder *recorder, const struct m
                                                  .full_start_ns = full ? record->full_start_ns : STORE_UNKNOWN,
                                                  .full_end_ns = full ? record->full_end_ns : STORE_UNKNOWN});
     return STORE_OK;
-}
-
-static void push_event(struct recorder *recorder, const struct machine_record *record, const char *detail)
-{
-    bool in_trial = record->trial != UINT32_MAX;
-    store_push_event(recorder->store,
-                     &(struct store_event){.session_id = recorder->ids->session_id,
-                                           .segment_id = recorder->ids->segment_id,
-                                           .trial_id = in_trial ? recorder->trial_ids[record->trial] : 0,
-                                           .at_ns = record->at_ns,
-                                           .kind = machine_record_name(record->kind),
-                                           .detail = detail});
 }
 
 static enum store_result note_toggle(struct recorder *recorder, const struct machine_record *record)

@@ -46,6 +46,7 @@ struct session_desc {
 
     struct gaze_source *gaze;                   // NULL: the fovea stays straight ahead
     const struct observer_parameters *observer; // NULL: a person answers by keyboard
+    uint32_t observer_subject;                  // from observer_subject of the participant's code
     const struct errors *errors;                // the observer's, where nothing is drawn
     double step_hz;                             // where nothing is drawn
 

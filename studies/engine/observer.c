@@ -152,10 +152,19 @@ bool observer_parse(const char *spec, struct observer_parameters *out, char *err
     return true;
 }
 
-void observer_start(struct observer *observer, const struct observer_parameters *parameters, uint64_t seed,
-                    uint32_t number)
+// Fowler, Noll and Vo's hash FNV-1a.
+uint32_t observer_subject(const char *code)
 {
-    struct random_stream stream = random_stream(seed, PURPOSE_KEY, number, 0);
+    uint32_t hash = 2166136261u;
+    for (; *code; code++)
+        hash = (hash ^ (uint8_t)*code) * 16777619u;
+    return hash;
+}
+
+void observer_start(struct observer *observer, const struct observer_parameters *parameters, uint64_t seed,
+                    uint32_t subject)
+{
+    struct random_stream stream = random_stream(seed, PURPOSE_KEY, subject, 0);
     *observer = (struct observer){.parameters = *parameters,
                                   .key = random_u64(&stream),
                                   .screen = MACHINE_END,
@@ -325,13 +334,10 @@ static int32_t choose(const struct observer *observer, const struct observer_err
     return latent > p->equal_band ? PLAN_SLOT_A : latent < -p->equal_band ? PLAN_SLOT_B : PLAN_SLOT_NONE;
 }
 
-// Names a draw by what is asked (Fowler, Noll and Vo's hash FNV-1a) and of which option.
+// Names a draw by what is asked and of which option.
 static uint32_t question_part(const struct machine_view *view)
 {
-    uint32_t hash = 2166136261u;
-    for (const char *c = view->question->name; *c; c++)
-        hash = (hash ^ (uint8_t)*c) * 16777619u;
-    return hash << 2 | (uint32_t)view->subject;
+    return observer_subject(view->question->name) << 2 | (uint32_t)view->subject;
 }
 
 // The latent value falls between criteria half a point apart from the whole numbers; the ends take what lies

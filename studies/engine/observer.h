@@ -1,7 +1,7 @@
 // A simulated participant: an event source for the machine, for rehearsals and tests.
 //
 // It looks, toggles with log-normal dwell times, chooses by a psychometric function of the options' image
-// errors, rates by a latent normal with criteria. Every draw is Philox keyed by (seed, participant number,
+// errors, rates by a latent normal with criteria. Every draw is Philox keyed by (seed, participant,
 // trial, purpose): the same session gives the same events. Where answers have a deadline it hurries, and misses
 // it in a share `late` of the attempts. Use, before each machine_frame:
 //     while (observer_next(o, now_ns, &view, &errors, &at_ns, &event)) { machine_event(m, at_ns, &event);
@@ -73,8 +73,10 @@ struct observer {
     uint32_t events;    // sent so far
 };
 
+// Who it is, by its code: two people who have the same number one after the other draw apart.
+uint32_t observer_subject(const char *code);
 void observer_start(struct observer *observer, const struct observer_parameters *parameters, uint64_t seed,
-                    uint32_t number);
+                    uint32_t subject);
 // The next event due at or before now_ns, at *out_at_ns; false: none.
 bool observer_next(struct observer *observer, int64_t now_ns, const struct machine_view *view,
                    const struct observer_errors *errors, int64_t *out_at_ns, struct machine_event *out_event);

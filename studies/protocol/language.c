@@ -22,7 +22,9 @@ static const struct language_key protocol_keys[] = {
      .about = "How many people are planned; `fovstudy check` says what so many can show.",
      .example = "participants: 22"},
     {"sessions", LANGUAGE_WORD, false, .words = WORDS("one", "several"), .fallback = "one",
-     .about = "Whether a participant may come again.", .example = "sessions: one"},
+     .about =
+         "Whether a participant may come again, with the same order; else only with --again, which is logged.",
+     .example = "sessions: one"},
     {"scenes", LANGUAGE_LIST, true, 1, 16, .of = "the scene",
      .about = "The scenes: names, or mappings that say what is shown while nobody binds the name.",
      .example = "scenes: [atrium, {name: bistro, stand_in: atrium, labels: {type: realistic}}]"},

@@ -62,6 +62,10 @@ void agreement_remark(struct reader *reader, const struct yaml_node *root);
 bool timing_check(struct reader *reader, const struct yaml_node *node, const struct protocol_block *block,
                   const struct protocol_settings *settings);
 
+// False where a factor or a trial changes a parameter of the tested option that `who` sets.
+bool parameter_is_free(struct reader *reader, const struct yaml_node *node, const struct protocol_block *block,
+                       uint32_t parameter, const char *who);
+
 // staircase.c
 bool staircase_read(struct reader *reader, const struct yaml_node *map, struct protocol_block *block);
 

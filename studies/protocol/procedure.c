@@ -56,6 +56,21 @@ static bool start_read(struct reader *reader, const struct yaml_node *map, struc
            read_number(reader, node->last, "start", adjust->start_min, adjust->max, &adjust->start_max);
 }
 
+bool parameter_is_free(struct reader *reader, const struct yaml_node *node, const struct protocol_block *block,
+                       uint32_t parameter, const char *who)
+{
+    for (uint32_t i = 0; i < block->cell_count; i++) {
+        const struct protocol_option *now = &block->cells[i].option[0],
+                                     *before = &reader->protocol->options[block->cells[i].shown[0]];
+        if (now->values[parameter] < before->values[parameter] ||
+            now->values[parameter] > before->values[parameter])
+            return read_fail(reader, node,
+                             "%s sets '%s', and so does a factor or a trial of block '%s'; keep one", who,
+                             reader->catalogue->modes[now->mode].parameters[parameter].name, block->name);
+    }
+    return true;
+}
+
 static bool adjust_read(struct reader *reader, const struct yaml_node *node, struct protocol_block *block)
 {
     struct protocol_adjust *adjust = &block->adjusts[block->adjust_count];
@@ -68,6 +83,8 @@ static bool adjust_read(struct reader *reader, const struct yaml_node *node, str
     if (parameter->choices)
         return read_fail_key(reader, node, "'%s' is a switch, which has no steps; adjust a number",
                              parameter->name);
+    if (!parameter_is_free(reader, node, block, adjust->parameter, "the participant"))
+        return false;
     adjust->min = parameter->min;
     adjust->max = parameter->max;
     const struct yaml_node *min = yaml_get(node, "min"), *max = yaml_get(node, "max");

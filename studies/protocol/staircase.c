@@ -70,6 +70,8 @@ static bool parameter_of(struct reader *reader, const struct yaml_node *map, str
             return read_fail(reader, node,
                              "a factor shows another mode than '%s', whose '%s' the staircase sets",
                              reader->catalogue->modes[mode].name, name);
+    if (!parameter_is_free(reader, node, block, staircase->parameter, "the staircase"))
+        return false;
     const struct quest_plus_grid *level = &staircase->desc.level;
     if (level->min < parameter->min || level->max > parameter->max)
         return read_fail(reader, yaml_get(map, "level"),

@@ -73,6 +73,7 @@ struct store_rating_row {
     const char *trial_status;         // "" for a rating of the session
     const char *trial_kind;           // the same
     const char *question, *block, *scene;
+    const char *order;    // "first" or "second" of a rate block and its complement; "" of others
     int64_t condition_id; // 0: none
     double value, scale_min, scale_max;
 };

@@ -156,10 +156,11 @@ bool store_read_audit_frames(struct store_reader *reader, store_audit_frame_fn e
         " f.fade_level, f.condition_id, c.mode NOT IN ('regular', 'ray_traced_full'), f.late, f.fovea_source,"
         " f.gaze_id, f.gaze_age_us, coalesce(m.valid = 0, 0) OR coalesce(n.valid = 0, 0),"
         " coalesce(m.valid = 1 AND m.eye <> 'both' AND g.eye <> 'both' AND m.eye <> g.eye, 0), f.fovea,"
-        " f.effective IS NOT NULL FROM frame f LEFT JOIN condition c ON c.id = f.condition_id"
-        " LEFT JOIN gaze g ON g.id = f.gaze_id"
-        " LEFT JOIN gaze m ON m.id = f.gaze_id + 1 AND m.segment_id = f.segment_id"
-        " LEFT JOIN gaze n ON n.id = f.gaze_id + 2 AND n.segment_id = f.segment_id ORDER BY f.id";
+        " " NOT_AS_ASKED(
+            "f.") " FROM frame f LEFT JOIN condition c ON c.id = f.condition_id"
+                  " LEFT JOIN gaze g ON g.id = f.gaze_id"
+                  " LEFT JOIN gaze m ON m.id = f.gaze_id + 1 AND m.segment_id = f.segment_id"
+                  " LEFT JOIN gaze n ON n.id = f.gaze_id + 2 AND n.segment_id = f.segment_id ORDER BY f.id";
     return read_all(reader, sql, frame_row, &(struct call){.user = user, .frame = each});
 }
 

@@ -40,9 +40,10 @@ static const char gaze_sql[] =
 static const char frames_sql[] =
     "SELECT count(late) FILTER (WHERE phase = 'stimulus'), total(late) FILTER (WHERE phase = 'stimulus'),"
     " count(condition_id), total(condition_id IS NOT NULL AND"
-    "  ((effective IS NOT NULL AND (condition_id IN foveated OR effective ->> '$.fovea' IS NULL))"
-    "   OR (?3 AND fovea_source IN ('fixed', 'lost') AND condition_id IN foveated)))"
-    " FROM frame WHERE " RANGE("frame") " AND attempt = ?2";
+    "  ((" NOT_AS_ASKED(
+        "frame.") " AND (condition_id IN foveated OR effective ->> '$.fovea' IS NULL))"
+                  "   OR (?3 AND fovea_source IN ('fixed', 'lost') AND condition_id IN foveated)))"
+                  " FROM frame WHERE " RANGE("frame") " AND attempt = ?2";
 static const char foveated_sql[] =
     "WITH foveated AS (SELECT id FROM condition WHERE mode NOT IN " UNFOVEATED ") ";
 

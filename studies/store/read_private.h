@@ -20,4 +20,12 @@ void store_reader_fail(struct store_reader *reader, const char *format, ...)
 bool store_reader_unchanged(struct store_reader *reader);
 void store_reader_fail_sqlite(struct store_reader *reader, int code);
 
+// Of a frame: `effective` says what was not asked for. What a participant adjusts, pictures played back and
+// pictures repeated at the common rate are as asked.
+#define NOT_AS_ASKED(frame)                                                                                    \
+    "(" frame "effective IS NOT NULL AND (" frame "effective ->> '$.fovea' IS NOT NULL OR (" frame             \
+    "effective ->> '$.playback' IS NULL AND " frame "effective ->> '$.repeated' IS NULL AND "                  \
+    "coalesce((SELECT settings ->> '$.procedure' FROM trial WHERE trial.id = " frame                           \
+    "trial_id), '') <> 'adjust')))"
+
 #endif

@@ -103,10 +103,11 @@ static void add_choice(sqlite3 *db, int i, int cell, bool chosen, const char *st
 static void add_rating(sqlite3 *db, int i, int which, int condition, int value, const struct study_desc *desc)
 {
     run(db,
-        "INSERT INTO trial VALUES(%d, %d, %d, %d, 'rate', 'rate', 'town', '{}', '{}', %d, NULL, NULL, NULL, "
+        "INSERT INTO trial VALUES(%d, %d, %d, %d, 'rate', 'rate', 'town', '{}', '{\"order\":\"%s\"}', %d, "
+        "NULL, NULL, NULL, "
         "NULL, 1, NULL, "
         "'done', 1, 0, 1)",
-        10 * i + 2 + which, i, i, which == 1 ? 1 : 4, condition);
+        10 * i + 2 + which, i, i, which == 1 ? 1 : 4, which == 1 ? "first" : "second", condition);
     run(db, "INSERT INTO rating VALUES(NULL, %d, NULL, %d, %Q, 'a', %d, %d, 1, 10, 5)", 10 * i + 2 + which, i,
         desc->hostile ? "<i>How good?</i> \"'\\ `touch hacked`" : "How good does it look?", condition, value);
 }

@@ -134,6 +134,16 @@ static void adjusted_values_are_what_was_drawn(void **state)
     expect("SELECT count(*)" SEEN "= 'five' AND option <> test_slot AND effective IS NOT NULL", "0");
 }
 
+// What a participant adjusts is what was asked for: no frame of it is a finding.
+static void the_audit_has_nothing_to_say(void **state)
+{
+    (void)state;
+    const struct command_result *result =
+        command("'%s/bin/fovstats' frames --audit --simulated '%s/a.db'", BUILD_DIR, folder);
+    assert_int_equal(result->status, 0);
+    assert_non_null(strstr(result->out, "\nNo finding.\n"));
+}
+
 // The spheres' rows say as many as the expected answer does, for each showing.
 static void spheres_are_there_and_told(void **state)
 {
@@ -175,6 +185,7 @@ int main(void)
         cmocka_unit_test(the_path_is_taken_once_a_showing),
         cmocka_unit_test(a_staircase_s_level_is_the_condition),
         cmocka_unit_test(adjusted_values_are_what_was_drawn),
+        cmocka_unit_test(the_audit_has_nothing_to_say),
         cmocka_unit_test(spheres_are_there_and_told),
     };
     return cmocka_run_group_tests(tests, set_up, NULL);

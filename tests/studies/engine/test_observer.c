@@ -215,9 +215,22 @@ static void test_parsing(void **state)
     bad("sim:errors=", "observer: errors names a file by at most 255 characters");
 }
 
+static void test_the_code_makes_the_observer(void **state)
+{
+    (void)state;
+    struct observer_parameters parameters;
+    struct observer a, b, again;
+    observer_defaults(&parameters);
+    observer_start(&a, &parameters, 1, observer_subject("S001"));
+    observer_start(&b, &parameters, 1, observer_subject("S002"));
+    observer_start(&again, &parameters, 1, observer_subject("S001"));
+    assert_true(a.key != b.key && a.key == again.key);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_the_code_makes_the_observer),
         cmocka_unit_test(test_it_recovers_its_psychometric_function),
         cmocka_unit_test(test_bias_lapses_and_certainty),
         cmocka_unit_test(test_times_and_toggles_suit_the_demonstration),

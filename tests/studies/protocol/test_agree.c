@@ -191,6 +191,42 @@ static void test_contradictions(void **state)
     expect_errors(cases, sizeof cases / sizeof cases[0]);
 }
 
+// A parameter that the participant or the staircase sets is no factor's too: the factors would say one value,
+// and another would be shown.
+static void test_one_thing_sets_a_parameter(void **state)
+{
+    (void)state;
+    static const char *const factors[] = {"epsilon: [0.1, 0.2]", "epsilon: [0.1]", "fovea_deg: [6, 10]"};
+    for (int stairs = 0; stairs < 2; stairs++) {
+        for (int i = 0; i < 3; i++) {
+            char text[2048], error[PROTOCOL_ERROR] = "";
+            snprintf(
+                text, sizeof text,
+                "fovstudy: 1\nname: host\ntitle: A host\nseed: 1\nscenes: [atrium]\nreference: r\n"
+                "instructions: Look.\nconsent: {version: 1, text: Agree?}\n"
+                "options: {f: {mode: time_warped}, r: {mode: regular}}\n"
+                "questions: {o: {text: Which?, correct: reference}}\nsettings: {question: o}\n"
+                "blocks:\n- name: b\n  kind: %s\n  options: [f, r]\n  factors: {%s}\n  %s\n",
+                stairs ? "staircase" : "adjust", factors[i],
+                stairs ? "staircase: {parameter: epsilon, method: 1up2down, larger: easier, level: {min: 0.1, "
+                         "max: 1}, start: 0.5, steps: [0.1], trials: 9}"
+                       : "adjust: {epsilon: {start: [0.1, 0.5], step: 0.1}}");
+            struct protocol *p =
+                protocol_parse("p", text, strlen(text), sample_catalogue(), error, sizeof error);
+            assert_int_equal(p != NULL, i == 2);
+            if (i < 2)
+                assert_string_equal(
+                    error,
+                    stairs
+                        ? "p:17:26: the staircase sets 'epsilon', and so does a factor or a trial of block "
+                          "'b'; keep one"
+                        : "p:17:21: the participant sets 'epsilon', and so does a factor or a trial of block "
+                          "'b'; keep one");
+            protocol_destroy(p);
+        }
+    }
+}
+
 // No block is the complement of itself, or of one that comes later: no circle can be written.
 static void test_circles(void **state)
 {
@@ -234,6 +270,7 @@ int main(void)
         cmocka_unit_test(test_people),
         cmocka_unit_test(test_analysis_and_rules),
         cmocka_unit_test(test_contradictions),
+        cmocka_unit_test(test_one_thing_sets_a_parameter),
         cmocka_unit_test(test_circles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
