@@ -28,5 +28,16 @@ ivec3 tile_pixel(uint code, uvec2 lane)
         atomicMax(list[1], slot / 65535u + 1u);                                                                        \
     }
 
+// Adds a pixel to a list of which a work group takes 64.
+#define PIXEL_APPEND(list, pixel)                                                                                      \
+    {                                                                                                                  \
+        uint slot = atomicAdd(list[3], 1u);                                                                            \
+        list[SHARED_TILES_FIRST + slot] = tile_code(uvec2(pixel.xy), uint(pixel.z));                                   \
+        if ((slot & 63u) == 0u) {                                                                                      \
+            atomicMax(list[0], min(slot / 64u + 1u, 65535u));                                                          \
+            atomicMax(list[1], slot / 64u / 65535u + 1u);                                                              \
+        }                                                                                                              \
+    }
+
 // The place in a list of a work group's tile; none where it is not less than the count, word 3.
 #define TILE_INDEX (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x)

@@ -185,7 +185,7 @@ static bool create_warping(struct mode_state *s, const struct mode_setup *setup)
                                          .moving = s->marks,
                                          .all_levels = setup->settings.adjustable,
                                          .may_move = setup->settings.adjustable && s->has_movers,
-                                         .tiles = &s->reproject.hole_tiles,
+                                         .holes = &s->reproject.holes,
                                          .confidence = confidence_of(setup->values)};
     return reproject_init(&s->reproject, &reproject) && pyramid_init(&s->pyramid, &pyramid);
 }

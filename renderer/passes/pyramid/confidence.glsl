@@ -4,7 +4,7 @@ layout(push_constant) uniform Push {
     float epsilon, fovea_deg, periphery_deg, hole_decay, dynamic_decay;
     uint levels, turn;
     float trusted_cosine; // of the angle at which c_e reaches epsilon; above 1: nothing is too near
-    uint listed;          // 1: tiles come from a list
+    uint listed;          // 1: holes come from a list
 } push;
 
 float eccentricity_confidence(ivec3 pixel, vec2 place)

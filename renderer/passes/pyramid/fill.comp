@@ -5,9 +5,9 @@
 #include "renderer/shared/tiles.glsl"
 #include "renderer/shared/view.glsl"
 
-// Holes that the redraw map does not hold yet: filled, or redrawn after all where their confidence is too low.
+// Holes, as listed (of all pixels without a list), that the redraw map does not hold yet: filled, or redrawn after all where their confidence is too low.
 
-layout(local_size_x = SHARED_TILE, local_size_y = SHARED_TILE) in;
+layout(local_size_x = 64) in;
 
 layout(scalar, binding = 0) uniform Frame { shared_frame frame; };
 #include "renderer/shared/eye.glsl"
@@ -16,7 +16,7 @@ layout(binding = 2, rgba32f) uniform image2DArray position;
 layout(binding = 3) uniform sampler2DArray pyramid; // mip m - 1 is level m
 layout(binding = 4) uniform sampler2DArray depths;
 layout(binding = 5, r8ui) uniform uimage2DArray redraw_map;
-layout(scalar, binding = 6) readonly buffer Tiles { uint tiles[]; };
+layout(scalar, binding = 6) readonly buffer Holes { uint holes[]; };
 #include "renderer/passes/pyramid/confidence.glsl"
 
 // Texels of level m of a pyramid as deep as is asked for; its image may be made deeper, and so larger.
@@ -32,22 +32,31 @@ ivec2 level_size(int m)
 vec4 level_value(ivec3 pixel, int m, out float depth)
 {
     int mip = m - 1;
-    ivec3 over = ivec3(pixel.xy >> m, pixel.z);
-    depth = texelFetch(depths, over, mip).x;
-    if (texelFetch(pyramid, over, mip).a == 0.0)
-        return vec4(0.0);
     vec2 at = (vec2(pixel.xy) + 0.5) / float(1 << m) - 0.5;
-    ivec2 corner = ivec2(floor(at)), last = level_size(m) - 1;
+    ivec2 over = pixel.xy >> m, corner = ivec2(floor(at)), last = level_size(m) - 1;
     vec2 f = at - vec2(corner);
+    vec4 values[4];
+    float depths_of[4];
+    float contrast = 0.0;
+    depth = 0.0;
+    for (int i = 0; i < 4; i++) {
+        ivec2 to = corner + ivec2(i & 1, i >> 1);
+        ivec3 texel = ivec3(clamp(to, ivec2(0), last), pixel.z);
+        values[i] = texelFetch(pyramid, texel, mip);
+        depths_of[i] = texelFetch(depths, texel, mip).x;
+        if (to == over) { // always one of the four
+            contrast = values[i].a;
+            depth = depths_of[i];
+        }
+    }
+    if (contrast == 0.0)
+        return vec4(0.0);
     vec4 sum = vec4(0.0);
     float weights = 0.0;
     for (int i = 0; i < 4; i++) {
-        ivec2 step = ivec2(i & 1, i >> 1);
-        ivec3 texel = ivec3(clamp(corner + step, ivec2(0), last), pixel.z);
-        vec4 p = texelFetch(pyramid, texel, mip);
-        vec2 w = mix(1.0 - f, f, vec2(step));
-        if (p.a > 0.0 && (texelFetch(depths, texel, mip).x > 0.0) == (depth > 0.0)) {
-            sum += w.x * w.y * p;
+        vec2 w = mix(1.0 - f, f, vec2(i & 1, i >> 1));
+        if (values[i].a > 0.0 && (depths_of[i] > 0.0) == (depth > 0.0)) {
+            sum += w.x * w.y * values[i];
             weights += w.x * w.y;
         }
     }
@@ -74,16 +83,17 @@ void fill(ivec3 pixel)
 
 void main()
 {
-    ivec3 pixel = ivec3(gl_GlobalInvocationID);
+    uint index = TILE_INDEX * 64u + gl_LocalInvocationIndex;
+    uvec3 pixel = uvec3(index % frame.width, index / frame.width % frame.height, index / frame.width / frame.height);
     if (push.listed != 0u) {
-        uint index = TILE_INDEX;
-        if (index >= tiles[SHARED_TILES_FIRST - 1])
+        if (index >= holes[SHARED_TILES_FIRST - 1])
             return;
-        pixel = tile_pixel(tiles[SHARED_TILES_FIRST + index], gl_LocalInvocationID.xy);
+        pixel = uvec3(tile_of(holes[SHARED_TILES_FIRST + index]));
     }
-    if (pixel.x >= int(frame.width) || pixel.y >= int(frame.height))
+    if (pixel.z > 1u)
         return;
-    bool hole = imageLoad(redraw_map, pixel).x == 0u && imageLoad(position, pixel).w == 0.0;
+    ivec3 at = ivec3(pixel);
+    bool hole = imageLoad(redraw_map, at).x == 0u && imageLoad(position, at).w == 0.0;
     for (; hole; hole = false) // the software driver leaves out a loop that no lane enters, but no branch
-        fill(pixel);
+        fill(at);
 }

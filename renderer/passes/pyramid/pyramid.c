@@ -33,7 +33,7 @@ static const struct gpu_binding fill_bindings[] = {
     {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, // pyramid
     {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, // its depths
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},          // redraw map
-    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},         // tiles
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},         // holes
 };
 
 static uint32_t most_levels(uint32_t width, uint32_t height)
@@ -84,7 +84,7 @@ static bool create_sets(struct pyramid *p, const struct pyramid_desc *desc)
             {.view = p->image.view, .sampler = p->sampler},
             {.view = p->depth.view, .sampler = p->sampler},
             {.view = desc->redraw_map},
-            {.buffer = desc->tiles ? desc->tiles : desc->frame}, // never read without a list
+            {.buffer = desc->holes ? desc->holes : desc->frame}, // never read without a list
         };
         const struct gpu_resource decide[] = {
             {.buffer = desc->frame}, {.view = desc->position[target]}, {.view = desc->redraw_map}};
@@ -150,7 +150,7 @@ void pyramid_set(struct pyramid *p, const struct pyramid_confidence *confidence,
 
 bool pyramid_init(struct pyramid *p, const struct pyramid_desc *desc)
 {
-    *p = (struct pyramid){.gpu = desc->gpu, .width = desc->width, .height = desc->height, .tiles = desc->tiles};
+    *p = (struct pyramid){.gpu = desc->gpu, .width = desc->width, .height = desc->height, .holes = desc->holes};
     pyramid_set(p, &desc->confidence, desc->moving);
     p->made_levels = desc->all_levels ? most_levels(p->width, p->height) : p->confidence.levels;
     struct gpu_kernel_desc pull = {.name = "pull first",
@@ -234,11 +234,12 @@ void pyramid_fill(const struct pyramid *p, VkCommandBuffer cmd, uint32_t target,
     struct pyramid_confidence push = p->confidence;
     push.turn = turn;
     push.trusted_cosine = (float)trusted_cosine(&push);
-    push.listed = p->tiles != NULL;
+    push.listed = p->holes != NULL;
     gpu_dispatch(cmd, &p->decide[p->moving], p->decide_sets[target], &push, sizeof push, x, y, 2);
-    gpu_barrier(cmd, compute, compute);
-    if (p->tiles)
-        gpu_dispatch_indirect(cmd, &p->fill, p->fill_sets[target], &push, sizeof push, p->tiles);
+    gpu_barrier(cmd, compute, compute | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT);
+    if (p->holes)
+        gpu_dispatch_indirect(cmd, &p->fill, p->fill_sets[target], &push, sizeof push, p->holes);
     else
-        gpu_dispatch(cmd, &p->fill, p->fill_sets[target], &push, sizeof push, x, y, 2);
+        gpu_dispatch(cmd, &p->fill, p->fill_sets[target], &push, sizeof push,
+                     (p->width + SHARED_TILE - 1) / SHARED_TILE, (2 * p->height + SHARED_TILE - 1) / SHARED_TILE, 1);
 }

@@ -33,7 +33,7 @@ struct pyramid {
     VkImageView level_views[PYRAMID_LEVELS], depth_views[PYRAMID_LEVELS];
     VkSampler sampler;
     struct gpu_kernel pull_first, pull, decide[2], fill; // decide[1]: objects move
-    const struct gpu_buffer *tiles;
+    const struct gpu_buffer *holes;
     VkDescriptorSet pull_sets[2][PYRAMID_LEVELS]; // by target, then by level
     VkDescriptorSet decide_sets[2], fill_sets[2];
 };
@@ -47,8 +47,7 @@ struct pyramid_desc {
     bool moving;                        // objects move: what the map already holds is redrawn too
     // Made for pyramid_set: with levels for any confidence, with kernels for both kinds of `moving`.
     bool all_levels, may_move;
-    const struct gpu_buffer
-        *tiles; // that hold holes (tiles.glsl), visible to DRAW_INDIRECT; NULL: all are looked at
+    const struct gpu_buffer *holes; // a list of pixels (tiles.glsl); NULL: all are looked at
     struct pyramid_confidence confidence;
 };
 

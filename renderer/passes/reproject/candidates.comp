@@ -5,14 +5,13 @@
 #include "renderer/shared/tiles.glsl"
 
 // Lists the tiles where something may show through: a point of theirs is farther than 1.1 times the nearest point of
-// theirs or of a neighbour. And those with holes, which what shows through will be.
+// theirs or of a neighbour.
 
 layout(local_size_x = SHARED_TILE, local_size_y = SHARED_TILE) in;
 
 layout(scalar, binding = 0) uniform Frame { shared_frame frame; };
-layout(scalar, binding = 9) readonly buffer Ranges { uvec3 ranges[]; };
+layout(scalar, binding = 9) readonly buffer Ranges { uvec2 ranges[]; };
 layout(scalar, binding = 10) buffer Near { uint near_tiles[]; };
-layout(scalar, binding = 11) buffer Holes { uint hole_tiles[]; };
 
 void main()
 {
@@ -24,10 +23,8 @@ void main()
     for (int y = max(tile.y - 1, 0); y <= min(tile.y + 1, tiles.y - 1); y++)
         for (int x = max(tile.x - 1, 0); x <= min(tile.x + 1, tiles.x - 1); x++)
             nearest = max(nearest, ranges[(tile.z * tiles.y + y) * tiles.x + x].x);
-    uvec3 range = ranges[(tile.z * tiles.y + tile.y) * tiles.x + tile.x];
+    uvec2 range = ranges[(tile.z * tiles.y + tile.y) * tiles.x + tile.x];
     bool may_show = range.y != 0xffffffffu && uintBitsToFloat(nearest) > 1.1 * uintBitsToFloat(range.y);
     if (may_show)
         TILE_APPEND(near_tiles, tile_code(uvec2(tile.xy), uint(tile.z)))
-    if (may_show || range.z != 0u)
-        TILE_APPEND(hole_tiles, tile_code(uvec2(tile.xy), uint(tile.z)))
 }

@@ -30,7 +30,7 @@ static const struct gpu_binding all_bindings[BINDINGS] = {
     {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, // depth, of the points
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},         // ranges
     {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},         // tiles where something may show through
-    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},         // tiles with holes
+    {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},         // holes
 };
 
 #define CODE(words) ((struct gpu_code){words, sizeof words})
@@ -43,15 +43,16 @@ static uint32_t tile_count(const struct reproject *r)
 static bool create_buffers(struct reproject *r, bool points)
 {
     const VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-    const VkDeviceSize list = (SHARED_TILES_FIRST + tile_count(r)) * sizeof(uint32_t);
-    return (points || gpu_buffer_create(r->gpu, "splat keys", 2ull * r->width * r->height * sizeof(uint64_t),
+    const VkDeviceSize list = (SHARED_TILES_FIRST + tile_count(r)) * sizeof(uint32_t),
+                       pixels = 2ull * r->width * r->height;
+    return (points || gpu_buffer_create(r->gpu, "splat keys", pixels * sizeof(uint64_t),
                                         storage, GPU_DEVICE, &r->keys)) &&
-           gpu_buffer_create(r->gpu, "depth ranges of tiles", 3ull * tile_count(r) * sizeof(uint32_t), storage,
+           gpu_buffer_create(r->gpu, "depth ranges of tiles", 2ull * tile_count(r) * sizeof(uint32_t), storage,
                              GPU_DEVICE, &r->ranges) &&
            gpu_buffer_create(r->gpu, "tiles of near points", list,
                              storage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, GPU_DEVICE, &r->near_tiles) &&
-           gpu_buffer_create(r->gpu, "tiles of holes", list, storage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT,
-                             GPU_DEVICE, &r->hole_tiles);
+           gpu_buffer_create(r->gpu, "holes", (SHARED_TILES_FIRST + pixels) * sizeof(uint32_t), storage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT,
+                             GPU_DEVICE, &r->holes);
 }
 
 static bool create_kernels(struct reproject *r, const struct gpu_binding *bindings, bool points,
@@ -98,7 +99,7 @@ static bool create_sets(struct reproject *r, const struct reproject_desc *desc,
             {.view = r->depth.view, .sampler = r->sampler, .layout = VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL},
             {.buffer = &r->ranges},
             {.buffer = &r->near_tiles},
-            {.buffer = &r->hole_tiles},
+            {.buffer = &r->holes},
         };
         r->sets[from] = gpu_set_create(r->gpu, r->resolve.set_layout, bindings, resources, BINDINGS);
         if (desc->points)
@@ -134,7 +135,7 @@ void reproject_finish(struct reproject *r)
     struct gpu_kernel *kernels[] = {&r->splat, &r->resolve, &r->measure, &r->candidates, &r->show_through};
     for (size_t i = 0; i < countof(kernels); i++)
         gpu_kernel_destroy(r->gpu, kernels[i]);
-    struct gpu_buffer *buffers[] = {&r->keys, &r->ranges, &r->near_tiles, &r->hole_tiles};
+    struct gpu_buffer *buffers[] = {&r->keys, &r->ranges, &r->near_tiles, &r->holes};
     for (size_t i = 0; i < countof(buffers); i++)
         gpu_buffer_destroy(r->gpu, buffers[i]);
     points_destroy(r);
@@ -145,7 +146,7 @@ void reproject_finish(struct reproject *r)
 uint64_t reproject_memory(const struct reproject *r)
 {
     return r->source.bytes + r->depth.bytes + r->keys.size + r->ranges.size + r->near_tiles.size +
-           r->hole_tiles.size;
+           r->holes.size;
 }
 
 static void record_show_through(const struct reproject *r, VkCommandBuffer cmd, VkDescriptorSet set)
@@ -172,7 +173,7 @@ void reproject_record(const struct reproject *r, VkCommandBuffer cmd, uint32_t f
     const uint32_t empty[SHARED_TILES_FIRST] = {0, 1, 1, 0};
     gpu_barrier(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
     vkCmdUpdateBuffer(cmd, r->near_tiles.buffer, 0, sizeof empty, empty);
-    vkCmdUpdateBuffer(cmd, r->hole_tiles.buffer, 0, sizeof empty, empty);
+    vkCmdUpdateBuffer(cmd, r->holes.buffer, 0, sizeof empty, empty);
     if (!r->points)
         vkCmdFillBuffer(cmd, r->keys.buffer, 0, VK_WHOLE_SIZE, 0);
     // whether a fill is a clear or a copy is read both ways; all transfers cover it

@@ -22,7 +22,7 @@ struct reproject {
     uint32_t width, height;
     struct gpu_buffer keys;                   // one uint64 a pixel and eye
     struct gpu_buffer ranges;                 // of depths, per tile
-    struct gpu_buffer near_tiles, hole_tiles; // lists (renderer/shared/tiles.glsl)
+    struct gpu_buffer near_tiles, holes;      // lists (renderer/shared/tiles.glsl), the holes of pixels
     struct gpu_kernel splat, resolve, measure, candidates, show_through;
     VkPipeline points; // null: the atomic splat
     VkPipelineLayout point_layout;
@@ -45,8 +45,8 @@ struct reproject_desc {
 bool reproject_init(struct reproject *reproject, const struct reproject_desc *desc);
 void reproject_finish(struct reproject *reproject);
 uint64_t reproject_memory(const struct reproject *reproject);
-// Reads history `from`, writes colour and position `1 - from`, and lists the tiles that have holes in
-// hole_tiles. Points that land less than drop_deg from the gaze are dropped: that hole is redrawn anyway
+// Reads history `from`, writes colour and position `1 - from`, and lists what is a hole in `holes`.
+// Points that land less than drop_deg from the gaze are dropped: that hole is redrawn anyway
 // (section 4); 0 keeps all. drop_moving: those of moving objects too.
 void reproject_record(const struct reproject *reproject, VkCommandBuffer cmd, uint32_t from, float drop_deg,
                       bool drop_moving);

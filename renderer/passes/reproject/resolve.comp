@@ -2,11 +2,16 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 #include "renderer/shared/shared.h"
+#include "renderer/shared/tiles.glsl"
+
+// Brings the points that won to their pixels, and lists the holes, where none did: they are few and scattered, an
+// approaching camera leaves one in about every tile, so that what looks for them tile by tile leaves most lanes idle.
 
 layout(local_size_x = SHARED_TILE, local_size_y = SHARED_TILE) in;
 
 layout(scalar, binding = 0) uniform Frame { shared_frame frame; };
 layout(scalar, binding = 1) readonly buffer Motions { mat4 motions[]; };
+layout(scalar, binding = 11) buffer Holes { uint holes[]; };
 layout(binding = 2, rgba32f) uniform readonly image2DArray position_from;
 layout(binding = 4, rgba8) uniform readonly image2DArray colour_from;
 layout(binding = 5, rgba32f) uniform writeonly image2DArray position_to;
@@ -31,4 +36,7 @@ void main()
     }
     imageStore(position_to, pixel, position);
     imageStore(colour_to, pixel, colour);
+    bool hole = inverted == 0u;
+    for (; hole; hole = false) // the software driver leaves out a loop that no lane enters, but no branch
+        PIXEL_APPEND(holes, pixel)
 }

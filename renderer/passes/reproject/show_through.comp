@@ -15,6 +15,7 @@ layout(binding = 2, rgba32f) uniform readonly image2DArray position_from;
 layout(binding = 5, rgba32f) uniform writeonly image2DArray position_to;
 layout(binding = 6, rgba8) uniform writeonly image2DArray colour_to;
 layout(scalar, binding = 10) readonly buffer Near { uint tiles[]; };
+layout(scalar, binding = 11) buffer Holes { uint holes[]; };
 #include "renderer/passes/reproject/winner.glsl"
 #include "renderer/passes/reproject/move.glsl"
 
@@ -100,6 +101,7 @@ void remove(ivec3 pixel)
 {
     imageStore(position_to, pixel, vec4(0.0));
     imageStore(colour_to, pixel, vec4(0.0));
+    PIXEL_APPEND(holes, pixel)
 }
 
 void main()
