@@ -241,5 +241,6 @@ void pyramid_fill(const struct pyramid *p, VkCommandBuffer cmd, uint32_t target,
         gpu_dispatch_indirect(cmd, &p->fill, p->fill_sets[target], &push, sizeof push, p->holes);
     else
         gpu_dispatch(cmd, &p->fill, p->fill_sets[target], &push, sizeof push,
-                     (p->width + SHARED_TILE - 1) / SHARED_TILE, (2 * p->height + SHARED_TILE - 1) / SHARED_TILE, 1);
+                     (p->width + SHARED_TILE - 1) / SHARED_TILE,
+                     (2 * p->height + SHARED_TILE - 1) / SHARED_TILE, 1);
 }

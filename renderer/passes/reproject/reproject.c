@@ -45,14 +45,14 @@ static bool create_buffers(struct reproject *r, bool points)
     const VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
     const VkDeviceSize list = (SHARED_TILES_FIRST + tile_count(r)) * sizeof(uint32_t),
                        pixels = 2ull * r->width * r->height;
-    return (points || gpu_buffer_create(r->gpu, "splat keys", pixels * sizeof(uint64_t),
-                                        storage, GPU_DEVICE, &r->keys)) &&
+    return (points || gpu_buffer_create(r->gpu, "splat keys", pixels * sizeof(uint64_t), storage, GPU_DEVICE,
+                                        &r->keys)) &&
            gpu_buffer_create(r->gpu, "depth ranges of tiles", 2ull * tile_count(r) * sizeof(uint32_t), storage,
                              GPU_DEVICE, &r->ranges) &&
            gpu_buffer_create(r->gpu, "tiles of near points", list,
                              storage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, GPU_DEVICE, &r->near_tiles) &&
-           gpu_buffer_create(r->gpu, "holes", (SHARED_TILES_FIRST + pixels) * sizeof(uint32_t), storage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT,
-                             GPU_DEVICE, &r->holes);
+           gpu_buffer_create(r->gpu, "holes", (SHARED_TILES_FIRST + pixels) * sizeof(uint32_t),
+                             storage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, GPU_DEVICE, &r->holes);
 }
 
 static bool create_kernels(struct reproject *r, const struct gpu_binding *bindings, bool points,

@@ -20,9 +20,9 @@
 struct reproject {
     struct gpu *gpu;
     uint32_t width, height;
-    struct gpu_buffer keys;                   // one uint64 a pixel and eye
-    struct gpu_buffer ranges;                 // of depths, per tile
-    struct gpu_buffer near_tiles, holes;      // lists (renderer/shared/tiles.glsl), the holes of pixels
+    struct gpu_buffer keys;              // one uint64 a pixel and eye
+    struct gpu_buffer ranges;            // of depths, per tile
+    struct gpu_buffer near_tiles, holes; // lists (renderer/shared/tiles.glsl), the holes of pixels
     struct gpu_kernel splat, resolve, measure, candidates, show_through;
     VkPipeline points; // null: the atomic splat
     VkPipelineLayout point_layout;
