@@ -90,10 +90,12 @@ bool audit_note(struct audit_pass *pass, size_t session, int64_t trial_id, enum 
 static bool take_segment(void *user, const struct store_segment_row *row)
 {
     struct audit_pass *pass = user;
+    if (sample_any_session(pass->sample, pass->file, row->session_id) == SAMPLE_NONE)
+        return true;
     if (!sample_grow(&pass->segments, pass->segment_count, sizeof *pass->segments))
         return false;
     pass->segments[pass->segment_count++] = *row;
-    if (!row->drew || sample_any_session(pass->sample, pass->file, row->session_id) == SAMPLE_NONE)
+    if (!row->drew)
         return true;
     size_t index = audit_find_session(pass, row->session_id);
     if (index == SAMPLE_NONE)

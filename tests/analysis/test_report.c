@@ -186,6 +186,25 @@ static void simulated_is_branded(void **state)
     free(page);
 }
 
+// Frames that were submitted in sessions that are left out are nobody's missing ones.
+static void simulated_sessions_beside_people_are_left_out(void **state)
+{
+    (void)state;
+    study_file_make("people.db", &(struct study_desc){.simulated = false});
+    study_file_make("sim.db", &(struct study_desc){.simulated = true});
+    study_file_sql("sim.db",
+                   "INSERT INTO event (session_id, segment_id, at_ns, kind, detail) SELECT session_id, id, 0, "
+                   "'frames_submitted', '{\"frames\":900}' FROM segment");
+    const char *argv[] = {fovstats, "report", "people.db", "sim.db", "-o", "both.html", NULL};
+    struct program_result r = program_run(argv, NULL);
+    if (r.code != 0 || r.err[0])
+        fail_msg("exit %d: %s", r.code, r.err);
+    program_free(&r);
+    char *page = slurp("both.html");
+    assert_non_null(strstr(page, "<li>simulated sessions: 22</li>"));
+    free(page);
+}
+
 static void hostile_texts_stay_texts(void **state)
 {
     (void)state;
@@ -291,6 +310,7 @@ int main(void)
         cmocka_unit_test(a_study_of_people),
         cmocka_unit_test(the_same_twice),
         cmocka_unit_test(simulated_is_branded),
+        cmocka_unit_test(simulated_sessions_beside_people_are_left_out),
         cmocka_unit_test(hostile_texts_stay_texts),
         cmocka_unit_test(exclusions_and_pooling_are_said),
         cmocka_unit_test(what_is_missing_is_said),
