@@ -58,6 +58,7 @@ static bool write_page(const struct report *r, char *error, size_t error_size)
     report_summary(r);
     report_sample(r);
     report_methods(r);
+    report_planned(r);
     report_choices(r);
     report_toggles(r);
     report_ratings(r);

@@ -70,11 +70,12 @@ static bool add_session(void *user, const struct store_session_row *row)
         .segments = row->segments,
         .scenes = row->scenes,
         .observer = row->observer,
+        .planned = row->planned,
     };
     const char **texts[] = {&session.status,        &session.started_at,      &session.ended_at,
                             &session.protocol_name, &session.protocol_sha256, &session.device,
                             &session.driver,        &session.display,         &session.app_version,
-                            &session.scenes,        &session.observer};
+                            &session.scenes,        &session.observer,        &session.planned};
     if (session.person == SAMPLE_NONE || !sample_keep_all(s, texts, sizeof texts / sizeof texts[0]) ||
         !sample_grow(&s->sessions, s->session_count, sizeof s->sessions[0]))
         return false;

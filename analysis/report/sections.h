@@ -39,6 +39,7 @@ struct report {
 void report_summary(const struct report *r);
 void report_sample(const struct report *r);
 void report_methods(const struct report *r);
+void report_planned(const struct report *r); // what the protocol planned, and where it is answered
 void report_choices(const struct report *r);
 void report_toggles(const struct report *r);
 void report_ratings(const struct report *r);

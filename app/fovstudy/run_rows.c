@@ -103,7 +103,13 @@ static char *settings_json(const struct run_options *options, const struct run_s
         fprintf(out, ":");
         json_string(out, study_shown_scene(study->protocol, i, options->scenes, options->scene_count));
     }
-    fprintf(out, "}}");
+    fprintf(out, "},\"planned\":[");
+    for (uint32_t i = 0; i < study->protocol->analysis_count; i++) {
+        const struct protocol_analysis *planned = &study->protocol->analyses[i];
+        fprintf(out, "%s{\"method\":\"%s\",\"of\":\"%s\",\"per\":\"%s\"}", i ? "," : "", planned->method,
+                planned->of, *planned->per ? planned->per : "-");
+    }
+    fprintf(out, "]}");
     return fclose(out) == 0 ? text : NULL;
 }
 

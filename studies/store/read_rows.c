@@ -78,6 +78,7 @@ static bool session_row(sqlite3_stmt *s, const struct call *call)
         .segments = sqlite3_column_int64(s, 20),
         .scenes = text(s, 21),
         .observer = text(s, 22),
+        .planned = text(s, 23),
     };
     return call->session(call->user, &row);
 }
@@ -95,7 +96,9 @@ bool store_read_sessions(struct store_reader *reader, store_session_fn each, voi
         " coalesce((SELECT group_concat(key || ': ' || value, ', ') FROM json_each(s.settings, '$.scenes')), "
         "''),"
         " coalesce((SELECT group_concat(key || ' ' || printf('%g', value), ', ')"
-        "           FROM json_each(s.settings, '$.observer')), '')"
+        "           FROM json_each(s.settings, '$.observer')), ''),"
+        " coalesce((SELECT group_concat((value ->> '$.method') || ' ' || (value ->> '$.of') || ' ' ||"
+        "   (value ->> '$.per'), char(10)) FROM json_each(s.settings, '$.planned')), '')"
         " FROM session s JOIN participant p ON p.id = s.participant_id JOIN protocol o ON o.id = s.protocol_id"
         " ORDER BY s.id";
     return read_rows(reader, sql, session_row, &(struct call){.user = user, .session = each});

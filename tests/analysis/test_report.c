@@ -205,6 +205,28 @@ static void simulated_sessions_beside_people_are_left_out(void **state)
     free(page);
 }
 
+// What no section answers is not silently missing; what was planned for people left out is nobody's.
+static void every_planned_analysis_is_named(void **state)
+{
+    (void)state;
+    study_file_make("s.db", &(struct study_desc){.simulated = false});
+    study_file_sql("s.db", "UPDATE session SET settings = json_set(settings, '$.planned', json('["
+                           "{\"method\":\"paired_t\",\"of\":\"rating\",\"per\":\"order\"},"
+                           "{\"method\":\"mean\",\"of\":\"reaction\",\"per\":\"-\"}]'))");
+    const char *argv[] = {fovstats, "report", "s.db", "-o", "r.html", NULL};
+    struct program_result r = program_run(argv, NULL);
+    assert_int_equal(r.code, 0);
+    program_free(&r);
+    char *page = slurp("r.html");
+    assert_int_equal(count(page, "<li>paired t of rating, per order: section \u201cRatings\u201d</li>"), 1);
+    assert_int_equal(count(page, "<li>mean of reaction: <strong>not computed by this version</strong></li>"),
+                     1);
+    free(page);
+    page = report(&(struct study_desc){.simulated = false});
+    assert_non_null(strstr(page, "The protocol planned none, or an earlier version recorded the sessions."));
+    free(page);
+}
+
 static void hostile_texts_stay_texts(void **state)
 {
     (void)state;
@@ -310,6 +332,7 @@ int main(void)
         cmocka_unit_test(a_study_of_people),
         cmocka_unit_test(the_same_twice),
         cmocka_unit_test(simulated_is_branded),
+        cmocka_unit_test(every_planned_analysis_is_named),
         cmocka_unit_test(simulated_sessions_beside_people_are_left_out),
         cmocka_unit_test(hostile_texts_stay_texts),
         cmocka_unit_test(exclusions_and_pooling_are_said),

@@ -3,6 +3,8 @@
 PRAGMA integrity_check;
 SELECT 'rows that refer to nothing', count(*) FROM pragma_foreign_key_check;
 SELECT 'sessions that did not end', count(*) FROM session WHERE status <> 'complete';
+SELECT 'plans that are not told', count(*) FROM session WHERE settings -> '$.planned' IS NOT
+    '[{"method":"binomial","of":"choice","per":"cell"},{"method":"mean","of":"reaction","per":"-"}]';
 SELECT 'log rows lost', count(*) FROM event WHERE kind LIKE 'log_%';
 SELECT 'trials left', count(*) FROM trial WHERE status NOT IN ('done', 'skipped', 'invalid');
 SELECT 'trials without a time', count(*) FROM trial WHERE status = 'done' AND NOT (started_ns < ended_ns AND attempt > 0);

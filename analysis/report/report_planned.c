@@ -1,0 +1,82 @@
+// What was planned before the first participant, each with the section that answers it. What no section answers
+// is said, so that a planned test is never silently missing.
+#include "analysis/report/html.h"
+#include "analysis/report/sections.h"
+
+#include <string.h>
+
+static const struct {
+    const char *plan, *section; // as store_session_row has plans
+} answers[] = {
+    {"binomial choice cell", "Choices"},
+    {"mean toggles study", "Toggles before answering"},
+    {"unpaired_t rating order", "Ratings"},
+    {"paired_t rating order", "Ratings"},
+};
+
+static const char *answer_of(const char *plan)
+{
+    for (size_t i = 0; i < sizeof answers / sizeof answers[0]; i++)
+        if (strcmp(answers[i].plan, plan) == 0)
+            return answers[i].section;
+    return NULL;
+}
+
+// "paired_t rating order" as "paired t of rating, per order".
+static void write_plan(FILE *out, const char *plan)
+{
+    int word = 0;
+    for (const char *c = plan; *c; c++) {
+        if (*c == ' ' && strcmp(c, " -") == 0)
+            return;
+        if (*c == ' ')
+            fputs(word++ == 0 ? " of " : ", per ", out);
+        else
+            html_printf(out, "%c", *c == '_' ? ' ' : *c);
+    }
+}
+
+// Whether a session before this one has the line.
+static bool known_before(const struct sample *sample, size_t session, const char *line)
+{
+    for (size_t i = 0; i < session; i++) {
+        char lines[2048];
+        snprintf(lines, sizeof lines, "%s", sample->sessions[i].planned);
+        for (char *rest = lines, *one; !sample->sessions[i].excluded && (one = strsep(&rest, "\n"));)
+            if (strcmp(one, line) == 0)
+                return true;
+    }
+    return false;
+}
+
+static size_t write_session(const struct report *r, size_t session, size_t count)
+{
+    char lines[2048]; // 16 plans of three words
+    snprintf(lines, sizeof lines, "%s", r->sample->sessions[session].planned);
+    for (char *rest = lines, *line; (line = strsep(&rest, "\n"));) {
+        if (!*line || known_before(r->sample, session, line))
+            continue;
+        const char *section = answer_of(line);
+        fputs(count++ ? "" : "<ul>\n", r->out);
+        fputs("<li>", r->out);
+        write_plan(r->out, line);
+        if (section)
+            fprintf(r->out, ": section \u201c%s\u201d</li>\n", section);
+        else
+            fputs(": <strong>not computed by this version</strong></li>\n", r->out);
+    }
+    return count;
+}
+
+void report_planned(const struct report *r)
+{
+    size_t count = 0;
+    fputs("<h2>Planned analyses</h2>\n", r->out);
+    for (size_t i = 0; i < r->sample->session_count; i++)
+        if (!r->sample->sessions[i].excluded)
+            count = write_session(r, i, count);
+    fputs(count ? "</ul>\n<p>They stand in the sections named; everything else in this report was not "
+                  "planned.</p>\n"
+                : "<p>The protocol planned none, or an earlier version recorded the sessions.</p>\n",
+          r->out);
+}
