@@ -145,9 +145,10 @@ static void left_out(const struct report *r)
                 sample_repeaters(r->sample));
     int64_t all = sessions + c->excluded + c->not_done + c->other_kinds + c->no_test_slot + t->excluded +
                   t->other_kinds + t->not_done + t->no_condition + t->more +
-                  (int64_t)r->sample->left_out_simulated;
+                  (int64_t)(r->sample->left_out_simulated + r->sample->left_out_protocol);
     fputs(all ? "<p>Left out of the numbers above:</p>\n<ul>\n" : "<p>Nothing was left out.</p>\n", r->out);
     count_item(r, (int64_t)r->sample->left_out_simulated, "simulated sessions");
+    count_item(r, (int64_t)r->sample->left_out_protocol, "sessions of other protocols");
     count_item(r, sessions, "excluded sessions");
     count_item(r, c->excluded, "answers to excluded trials");
     count_item(r, c->not_done, "answers to trials that are not done");

@@ -140,8 +140,8 @@ static void differing_note(const struct report *r)
                      facts[k].name);
     }
     if (list[0])
-        html_printf(r->out, "<p class=\"note\">The sessions differ in: %s. The numbers below pool them.</p>\n",
-                    list);
+        fprintf(r->out, "<p class=\"note\">The sessions differ in: %s. The numbers below pool them.</p>\n",
+                list);
 }
 
 static bool person_used(const struct sample *sample, size_t person)
@@ -246,6 +246,13 @@ void report_sample(const struct report *r)
         fact_row(r, "Observer", fact_observer);
     fact_row(r, "Program", fact_version);
     fputs("</tbody></table></div>\n", r->out);
+    if (s->left_out_protocol)
+        fprintf(r->out,
+                "<p class=\"note\">%zu %s of other protocols in these files %s no part of this report; "
+                "--protocol NAME "
+                "reports them.</p>\n",
+                s->left_out_protocol, s->left_out_protocol == 1 ? "session" : "sessions",
+                s->left_out_protocol == 1 ? "is" : "are");
     differing_note(r);
 }
 

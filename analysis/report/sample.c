@@ -154,6 +154,62 @@ static bool no_copies(const struct sample *sample, char *error, size_t error_siz
     return true;
 }
 
+struct protocols {
+    struct sample *sample;
+    size_t count;
+    struct protocol_sessions {
+        const char *name;
+        size_t sessions;
+    } * each; // owned; the names are the sample's
+};
+
+static bool count_protocol(void *user, const struct store_session_row *row)
+{
+    struct protocols *p = user;
+    if (row->simulated != p->sample->simulated)
+        return true;
+    size_t i = 0;
+    while (i < p->count && strcmp(p->each[i].name, row->protocol_name) != 0)
+        i++;
+    if (i == p->count) {
+        if (!sample_grow(&p->each, p->count, sizeof p->each[0]))
+            return false;
+        p->each[p->count] = (struct protocol_sessions){sample_keep(p->sample, row->protocol_name), 0};
+        if (!p->each[p->count++].name)
+            return false;
+    }
+    p->each[i].sessions++;
+    return true;
+}
+
+// A cell of one protocol is none of another's, whatever both are called.
+static bool choose_protocol(struct sample *sample, const char *wanted, char *error, size_t error_size)
+{
+    struct protocols p = {.sample = sample};
+    bool ok = true;
+    for (size_t i = 0; ok && i < sample->file_count; i++) {
+        ok = store_read_sessions(sample->files[i], count_protocol, &p);
+        if (!ok && store_reader_error(sample->files[i])[0])
+            snprintf(error, error_size, "%s", store_reader_error(sample->files[i]));
+    }
+    size_t best = 0;
+    for (size_t i = 1; ok && i < p.count; i++)
+        if (p.each[i].sessions > p.each[best].sessions)
+            best = i;
+    for (size_t i = 0; ok && wanted && i < p.count; i++)
+        if (strcmp(p.each[i].name, wanted) == 0)
+            best = i;
+    sample->protocol = ok && p.count ? p.each[best].name : "";
+    if (ok && wanted && p.count && strcmp(sample->protocol, wanted) != 0) {
+        snprintf(error, error_size, "%s: no session is of the protocol '%s'; there are sessions of '%s'%s",
+                 store_reader_path(sample->files[0]), wanted, sample->protocol,
+                 p.count > 1 ? " and others" : "");
+        ok = false;
+    }
+    free(p.each);
+    return ok;
+}
+
 static bool sessions_left(const struct sample *sample, char *error, size_t error_size)
 {
     const char *path = store_reader_path(sample->files[0]),
@@ -178,12 +234,13 @@ static bool sessions_left(const struct sample *sample, char *error, size_t error
     return false;
 }
 
-bool sample_load(struct sample *out, const char *const *paths, size_t path_count, bool simulated, char *error,
-                 size_t error_size)
+bool sample_load(struct sample *out, const char *const *paths, size_t path_count, bool simulated,
+                 const char *protocol, char *error, size_t error_size)
 {
     *out = (struct sample){.simulated = simulated};
     snprintf(error, error_size, "not enough memory");
-    if (open_files(out, paths, path_count, error, error_size) && sample_read(out, error, error_size) &&
+    if (open_files(out, paths, path_count, error, error_size) &&
+        choose_protocol(out, protocol, error, error_size) && sample_read(out, error, error_size) &&
         no_copies(out, error, error_size) && sessions_left(out, error, error_size)) {
         error[0] = '\0';
         return true;

@@ -88,6 +88,8 @@ struct sample_exclusion {
 struct sample {
     bool simulated; // the sessions analysed are simulated ones
     size_t left_out_simulated;
+    const char *protocol;     // the name of the one whose sessions are analysed
+    size_t left_out_protocol; // sessions of others
     size_t file_count;
     struct store_reader **files;
     size_t session_count, person_count, attribute_count, condition_count, condition_id_count, parameter_count,
@@ -105,9 +107,11 @@ struct sample {
 };
 
 // False with a sentence in `error`; the sample is then empty. With `simulated`, simulated sessions are
-// analysed; they are refused together with sessions of people. No session left is an error too.
-bool sample_load(struct sample *out, const char *const *paths, size_t path_count, bool simulated, char *error,
-                 size_t error_size);
+// analysed; they are refused together with sessions of people. No session left is an error too. Sessions of one
+// protocol, by its name, are analysed: `protocol`, or where that is NULL the one with most of them, of as many
+// the first.
+bool sample_load(struct sample *out, const char *const *paths, size_t path_count, bool simulated,
+                 const char *protocol, char *error, size_t error_size);
 void sample_free(struct sample *sample);
 
 // Index of a session that is analysed, SAMPLE_NONE for any other.

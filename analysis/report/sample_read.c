@@ -47,6 +47,10 @@ static bool add_session(void *user, const struct store_session_row *row)
             "holds sessions of people; leave --simulated out, or name only files of simulated sessions";
         return false;
     }
+    if (strcmp(row->protocol_name, s->protocol) != 0) {
+        s->left_out_protocol++;
+        return true;
+    }
     struct sample_session session = {
         .file = f->file,
         .id = row->id,

@@ -17,6 +17,7 @@ static const char help[] =
     "toggles before answering and reaction time. Left and right are resolved by the stored test slot.\n"
     "  --conf C     confidence of interval and null region (0.95)\n"
     "  --simulated  analyse simulated sessions, which are left out otherwise\n"
+    "  --protocol N analyse the sessions of this protocol; else of the one with most sessions\n"
     "  --json       one object with the cells in an array\n"
     "The test takes a cell's answers as independent. A cell with several answers of one person is\n"
     "marked \"pooled\": its p and interval are then too optimistic.\n";

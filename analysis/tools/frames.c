@@ -17,6 +17,7 @@ static const char help[] =
     "was not\n"
     "               the one asked for, and the fade of every switch against the protocol; names the trials\n"
     "  --simulated  analyse simulated sessions, which are left out otherwise\n"
+    "  --protocol N analyse the sessions of this protocol; else of the one with most sessions\n"
     "  --json       one object with the groups in an array\n";
 
 static void times_cells(struct table *t, const struct frame_times *times)

@@ -14,6 +14,7 @@ static const char help[] =
     "second minus first within each group (paired t-test). The groups are never pooled.\n"
     "  --conf C     confidence of the intervals (0.95)\n"
     "  --simulated  analyse simulated sessions, which are left out otherwise\n"
+    "  --protocol N analyse the sessions of this protocol; else of the one with most sessions\n"
     "  --json       one object with the questions in an array\n";
 
 static const char *label(const struct sample *sample, size_t condition)

@@ -10,7 +10,8 @@ static const char help[] =
     "definitions; its figures are inside it, and it opens without a network. Needs gnuplot.\n"
     "  -o FILE      where to; written whole or not at all\n"
     "  --conf C     confidence of intervals and null regions (0.95)\n"
-    "  --simulated  report simulated sessions, which are left out otherwise; the report is branded\n";
+    "  --simulated  report simulated sessions, which are left out otherwise; the report is branded\n"
+    "  --protocol N report the sessions of this protocol; else of the one with most sessions\n";
 
 static int run(const struct command *command, int argc, char **argv)
 {

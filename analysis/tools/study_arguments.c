@@ -11,6 +11,7 @@ int study_arguments_load(const struct command *command, int argc, char **argv, b
     *out = (struct study_arguments){.conf = 0.95};
     const struct option options[] = {{"--simulated", OPTION_FLAG, &out->simulated},
                                      {"--conf", OPTION_NUMBER, &out->conf},
+                                     {"--protocol", OPTION_TEXT, &out->protocol},
                                      takes_output ? (struct option){"-o", OPTION_TEXT, &out->output}
                                                   : (struct option){"--json", OPTION_FLAG, &out->json}};
     int count = 0,
@@ -25,7 +26,8 @@ int study_arguments_load(const struct command *command, int argc, char **argv, b
         return command_fail(command, EXIT_USAGE, "--conf is %g but must lie between 0 and 1, for example 0.95",
                             out->conf);
     char error[SAMPLE_ERROR_SIZE];
-    if (!sample_load(out_sample, (const char *const *)argv, (size_t)count, out->simulated, error, sizeof error))
+    if (!sample_load(out_sample, (const char *const *)argv, (size_t)count, out->simulated, out->protocol, error,
+                     sizeof error))
         return command_fail(command, EXIT_FAILED, "%s", error);
     return -1;
 }
@@ -64,12 +66,17 @@ void study_title_json(struct json *json, const struct sample *sample)
     json_integer(json, "sessions", sessions);
     json_integer(json, "sessions_excluded", (int64_t)sample->session_count - sessions);
     json_integer(json, "sessions_left_out_simulated", (int64_t)sample->left_out_simulated);
+    json_text(json, "protocol", sample->protocol);
+    json_integer(json, "sessions_left_out_protocol", (int64_t)sample->left_out_protocol);
 }
 
 void study_notes(const struct sample *sample)
 {
     if (sample->left_out_simulated)
         printf("Left out, simulated sessions (--simulated analyses them): %zu.\n", sample->left_out_simulated);
+    if (sample->left_out_protocol)
+        printf("Left out, sessions of another protocol than '%s' (--protocol NAME analyses them): %zu.\n",
+               sample->protocol, sample->left_out_protocol);
     if (sample_repeaters(sample))
         printf("People with several sessions: %zu; ratings take each session as a person of its own.\n",
                sample_repeaters(sample));

@@ -8,6 +8,7 @@
 
 struct study_arguments {
     bool simulated, json;
+    const char *protocol; // NULL: the one of most sessions
     double conf;
     const char *output; // -o; NULL where not given
 };

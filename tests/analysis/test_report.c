@@ -227,6 +227,39 @@ static void every_planned_analysis_is_named(void **state)
     free(page);
 }
 
+// Ten of the 22 sessions are of another protocol: its answers are in no cell of this one.
+static void one_protocol_is_reported(void **state)
+{
+    (void)state;
+    static const char *const wanted[] = {NULL, "other", "nothing"};
+    study_file_make("s.db", &(struct study_desc){.simulated = false});
+    study_file_sql("s.db", "INSERT INTO protocol (id, name, sha256, text) SELECT 9, 'other', replace(sha256, "
+                           "substr(sha256, 1, 1), "
+                           "'e'), text FROM protocol; UPDATE session SET protocol_id = 9 WHERE id > 12");
+    for (int i = 0; i < 3; i++) {
+        const char *argv[] = {fovstats,  "report", "s.db", "-o", "r.html", wanted[i] ? "--protocol" : NULL,
+                              wanted[i], NULL};
+        struct program_result r = program_run(argv, NULL);
+        assert_int_equal(r.code, i == 2);
+        if (i == 2)
+            assert_non_null(strstr(r.err, "no session is of the protocol 'nothing'"));
+        program_free(&r);
+        char *page = slurp("r.html");
+        assert_non_null(strstr(page, i == 0 ? "<p class=\"note\">10 sessions of other protocols"
+                                            : "<p class=\"note\">12 sessions of other protocols"));
+        assert_non_null(strstr(page, i == 0 ? "<td>12 (12 sessions)</td>" : "<td>10 (10 sessions)</td>"));
+        free(page);
+    }
+    study_file_sql("s.db", "UPDATE protocol SET name = (SELECT name FROM protocol WHERE id < 9)");
+    const char *argv[] = {fovstats, "report", "s.db", "-o", "r.html", NULL};
+    struct program_result r = program_run(argv, NULL);
+    assert_int_equal(r.code, 0);
+    program_free(&r);
+    char *page = slurp("r.html");
+    assert_non_null(strstr(page, "<p class=\"note\">The sessions differ in: protocol text."));
+    free(page);
+}
+
 static void hostile_texts_stay_texts(void **state)
 {
     (void)state;
@@ -333,6 +366,7 @@ int main(void)
         cmocka_unit_test(the_same_twice),
         cmocka_unit_test(simulated_is_branded),
         cmocka_unit_test(every_planned_analysis_is_named),
+        cmocka_unit_test(one_protocol_is_reported),
         cmocka_unit_test(simulated_sessions_beside_people_are_left_out),
         cmocka_unit_test(hostile_texts_stay_texts),
         cmocka_unit_test(exclusions_and_pooling_are_said),
