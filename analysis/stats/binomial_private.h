@@ -7,6 +7,9 @@
 
 #include <stdbool.h>
 
+// Above it ln p is the logarithm of p: pbinom has all its digits there, and doubles lose theirs below 2.2e-308.
+#define BINOMIAL_SHALLOW 1e-280
+
 bool binomial_counts_ok(int64_t k, int64_t n);
 bool binomial_probability_ok(double p0);
 bool binomial_conf_ok(double conf);

@@ -1,17 +1,17 @@
 // Tails of the binomial distribution at any depth, and the counts that are no more probable than a limit.
 //   Tails are pbinom of libRmath down to 1e-280. Deeper they are P(k) times 1 + r(1) + r(1) r(2) + ..., r being
-//   the ratios of neighbouring probabilities, which only fall outwards: terms are positive, and that far out
-//   some 40 standard deviations over their number of them are enough (2e4 for n = 1e9). The logarithm of P(k)
-//   is dbinom's (Loader, C. 2000, Fast and accurate computation of binomial probabilities). Edges: P(j) is
-//   log-concave, so Newton's step on ln P lands beyond the edge and comes back; a bracket and bisection catch
-//   what is too flat for it. About 5 densities where bisection alone takes log2(n).
+//   the ratios of neighbouring probabilities, which only fall outwards: terms are positive, and z standard
+//   deviations out some 40 sd / z of them are enough (2e4 for n = 1e9). The logarithm of P(k) is dbinom's
+//   (Loader, C. 2000, Fast and accurate computation of binomial probabilities).
+//
+//   Edges: P(j) is log-concave, so Newton's step on ln P lands beyond the edge and comes back; a bracket and
+//   bisection catch what is too flat for it. Three densities on average, where bisection alone takes log2(n).
 #include "analysis/stats/binomial_private.h"
 
 #include <Rmath.h>
 #include <math.h>
 
-static const double shallow = 1e-280; // pbinom still has all its digits there; doubles lose them below 2.2e-308
-enum { NEWTON_STEPS = 8 };            // then bisection: flat around the mode
+enum { NEWTON_STEPS = 8 }; // then bisection: flat around the mode
 
 bool binomial_counts_ok(int64_t k, int64_t n)
 {
@@ -56,7 +56,7 @@ static double outward_sum(double inside, double outside, double odds)
 double binomial_log_lower(int64_t k, int64_t n, double p0)
 {
     double p = binomial_lower(k, n, p0), size = (double)n, x = (double)k;
-    if (p > shallow || k < 0)
+    if (p > BINOMIAL_SHALLOW || k < 0)
         return p > 0.5 ? log1p(-binomial_upper(k + 1, n, p0)) : log(p);
     return dbinom(x, size, p0, true) + log(outward_sum(x, size - x, (1 - p0) / p0));
 }
@@ -64,7 +64,7 @@ double binomial_log_lower(int64_t k, int64_t n, double p0)
 double binomial_log_upper(int64_t k, int64_t n, double p0)
 {
     double p = binomial_upper(k, n, p0), size = (double)n, x = (double)k;
-    if (p > shallow || k > n)
+    if (p > BINOMIAL_SHALLOW || k > n)
         return p > 0.5 ? log1p(-binomial_lower(k - 1, n, p0)) : log(p);
     return dbinom(x, size, p0, true) + log(outward_sum(size - x, x, p0 / (1 - p0)));
 }
@@ -82,7 +82,7 @@ double binomial_outside(struct binomial_tails tails, int64_t n, double p0)
 double binomial_log_outside(struct binomial_tails tails, int64_t n, double p0)
 {
     double p = binomial_outside(tails, n, p0);
-    if (p > shallow)
+    if (p > BINOMIAL_SHALLOW)
         return log(p);
     double low = binomial_log_lower(tails.low, n, p0), high = binomial_log_upper(tails.high, n, p0);
     return isinf(low) ? high : isinf(high) ? low : logspace_add(low, high);
