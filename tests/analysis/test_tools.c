@@ -108,6 +108,53 @@ static void binom_prints(void **state)
     program_free(&r);
 }
 
+static void binom_prints_all(void **state)
+{
+    (void)state;
+    struct program_result r =
+        FOVSTATS("binom", "6", "22", "--mid-p", "--margin", "0.1", "--prior", "2,7", "--share", "0.75");
+    assert_int_equal(r.code, 0);
+    expect_golden(r.out, "binom_all.txt");
+    program_free(&r);
+    // row(6, 22, 0.5, 0.95, 0.1) of tests/reference/binomial_exact.py; 30 and 35 are counts.R's
+    r = FOVSTATS("binom", "6", "22", "--margin", "0.1", "--prior", "2,7", "--share", "0.75", "--json");
+    assert_true(reference_close(json_after(r.out, "{", "ln_p"), -2.94734618561802, 1e-12));
+    assert_true(reference_close(log(json_after(r.out, "{", "mid_p")), -3.3613134796009644, 1e-12));
+    assert_true(reference_close(json_after(r.out, "{", "wilson_low"), 0.13150760287989472, 1e-12));
+    assert_true(reference_close(json_after(r.out, "{", "jeffreys_high"), 0.47823117669052994, 1e-12));
+    assert_true(reference_close(json_after(r.out, "{", "ln_bf10"), 1.6126960271244198, 1e-12));
+    assert_true(
+        reference_close(log(json_after(r.out, "equivalence", "p_value")), -0.074967491637748123, 1e-12));
+    assert_true(json_after(r.out, "power", "n_first") == 30 && json_after(r.out, "power", "n_stays") == 35);
+    assert_non_null(strstr(r.out, "\"shown\":\"undecided\""));
+    program_free(&r);
+    r = FOVSTATS("binom", "0", "100000"); // 2^-99999
+    assert_non_null(strstr(r.out, "p            2.002e-30103\n"));
+    assert_null(strstr(r.out, "equality")); // a difference is shown
+    program_free(&r);
+}
+
+// No difference is never said to be equality, and equality only where the margin's test shows it.
+static void no_difference_is_not_equality(void **state)
+{
+    (void)state;
+    const struct {
+        const char *k, *n, *margin, *says;
+    } cases[] = {{"11", "22", NULL, "equality     not shown"},
+                 {"11", "22", "0.1", "neither a difference nor equality"},
+                 {"500", "1000", "0.05", "so           equality within the margin is shown"},
+                 {"540", "1000", "0.1", "a difference is shown, and that it is within the margin"},
+                 {"600", "1000", "0.05", "a difference is shown, and not that it is within the margin"}};
+    for (int i = 0; i < 5; i++) {
+        struct program_result r = cases[i].margin
+                                      ? FOVSTATS("binom", cases[i].k, cases[i].n, "--margin", cases[i].margin)
+                                      : FOVSTATS("binom", cases[i].k, cases[i].n);
+        if (r.code != 0 || !strstr(r.out, cases[i].says))
+            fail_msg("%s of %s: no \"%s\" in %s", cases[i].k, cases[i].n, cases[i].says, r.out);
+        program_free(&r);
+    }
+}
+
 static void expect_sentence(struct program_result r, int code, const char *part)
 {
     if (r.code != code || !strstr(r.err, part) || r.out[0])
@@ -141,6 +188,17 @@ static void wrong_use(void **state)
     expect_sentence(FOVSTATS("binom", "1", "2", "--conf", "1"), 2, "--conf is 1 but must lie between 0 and 1");
     expect_sentence(FOVSTATS("binom", "1", "2", "--conf"), 2, "--conf needs a value");
     expect_sentence(FOVSTATS("binom", "1", "2", "--alternative", "both"), 2, "--alternative is \"both\"");
+    expect_sentence(FOVSTATS("binom", "1", "2", "--p0", "7"), 2, "--p is 7");
+    expect_sentence(FOVSTATS("binom", "1", "2", "--margin", "0.6"), 2, "--margin is 0.6 but must be above 0");
+    expect_sentence(FOVSTATS("binom", "1", "2", "--margin", "-0.1"), 2, "--margin is -0.1");
+    expect_sentence(FOVSTATS("binom", "1", "2", "--margin", "0.1", "--conf", "0.5"), 2,
+                    "--margin needs more than 0.5");
+    expect_sentence(FOVSTATS("binom", "1", "2", "--prior", "1"), 2, "--prior is \"1\"");
+    expect_sentence(FOVSTATS("binom", "1", "2", "--prior", "1,0"), 2, "--prior is \"1,0\"");
+    expect_sentence(FOVSTATS("binom", "1", "2", "--prior", "1,2,3"), 2, "--prior is \"1,2,3\"");
+    expect_sentence(FOVSTATS("binom", "1", "2", "--share", "1.01"), 2, "--share is 1.01");
+    expect_sentence(FOVSTATS("binom", "1", "2", "--power", "1"), 2,
+                    "--power is 1 but must lie between 0 and 1");
     expect_sentence(FOVSTATS("binom", "1", "2", "--quiet"), 2, "--quiet is not an option");
     expect_sentence(FOVSTATS("choices"), 2, "needs at least one study file");
     expect_sentence(FOVSTATS("choices", "x.db", "--conf", "1"), 2, "--conf is 1");
@@ -379,6 +437,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(binom_prints),
+        cmocka_unit_test(binom_prints_all),
+        cmocka_unit_test(no_difference_is_not_equality),
         cmocka_unit_test(wrong_use),
         cmocka_unit_test(help_everywhere),
         cmocka_unit_test(unreadable_files),
