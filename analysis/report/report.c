@@ -107,6 +107,24 @@ static bool draw_ratings(struct report *r, char *error, size_t error_size)
     return true;
 }
 
+static bool draw_factorials(struct report *r, char *error, size_t error_size)
+{
+    const struct factorial_list *list = &r->ratings.factorials;
+    for (size_t i = 0; i < list->count && i < REPORT_QUESTIONS; i++)
+        for (int narrow = 0; !list->items[i].refusal[0] && narrow < 2; narrow++) {
+            char id[32];
+            snprintf(id, sizeof id, "factorial-%zu-%c", i, narrow ? 'n' : 'w');
+            struct figure_text text = {id, "Mean ratings per level of each factor",
+                                       "A dot and an interval per level; the tables below have every number.",
+                                       narrow ? "narrow" : "wide"};
+            struct figure_desc desc = {narrow, &text};
+            char **svg = narrow ? &r->factorial_figures[i].narrow : &r->factorial_figures[i].wide;
+            if (!figure_factorial(&list->items[i], &desc, svg, error, error_size))
+                return false;
+        }
+    return true;
+}
+
 static bool draw_frames(struct report *r, char *error, size_t error_size)
 {
     for (int narrow = 0; figure_frames_rows(&r->frames) && narrow < 2; narrow++) {
@@ -179,6 +197,8 @@ static void free_figures(struct report *r)
     for (int i = 0; i < REPORT_QUESTIONS; i++) {
         free(r->ratings_figures[i].wide);
         free(r->ratings_figures[i].narrow);
+        free(r->factorial_figures[i].wide);
+        free(r->factorial_figures[i].narrow);
     }
 }
 
@@ -193,8 +213,8 @@ bool report_write(struct sample *sample, double conf, const char *path, char *er
     else
         snprintf(error, error_size, "not enough memory");
     ok = ok && load(&r, error, error_size) && draw_choices(&r, error, error_size) &&
-         draw_ratings(&r, error, error_size) && draw_frames(&r, error, error_size) &&
-         write_to(&r, path, temporary, error, error_size);
+         draw_ratings(&r, error, error_size) && draw_factorials(&r, error, error_size) &&
+         draw_frames(&r, error, error_size) && write_to(&r, path, temporary, error, error_size);
     free_figures(&r);
     choices_free(&r.choices);
     ratings_free(&r.ratings);

@@ -30,7 +30,8 @@ struct stat_wilcoxon {
     double p_value;
     bool exact;
     double estimate; // the median of all averages of two values, each with itself too; of zeros as well
-    // Of the estimate: holds its confidence or more, with ties too. Infinite where n is too small for it.
+    // Of the estimate: holds its confidence or more, with ties too. Infinite where n is too small for it. Zeros
+    // widen it and are no part of the test, so it may reach 0 where the test rejects 0.
     double ci_low, ci_high;
 };
 

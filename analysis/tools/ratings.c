@@ -1,6 +1,7 @@
 #include "analysis/report/ratings.h"
 
 #include "analysis/tools/arguments.h"
+#include "analysis/tools/ratings_parts.h"
 #include "analysis/tools/study_arguments.h"
 #include "analysis/tools/table.h"
 
@@ -10,8 +11,12 @@
 static const char help[] =
     "usage: fovstats ratings DB... [--conf C] [--simulated] [--json]\n"
     "\n"
-    "Two ratings per session in two orders: first ratings between the order groups (Welch's t-test), and\n"
-    "second minus first within each group (paired t-test). The groups are never pooled.\n"
+    "Ratings before and after, in two orders: first ratings between the order groups (Welch's t-test), and\n"
+    "second minus first within each group (paired t-test, Wilcoxon's signed ranks, d_z). The groups are never\n"
+    "pooled. Both options rated in a trial: test minus reference per cell, with Holm's adjustment over cells.\n"
+    "Ratings over crossed factors: analysis of variance within participants, with Greenhouse-Geisser's and\n"
+    "Huynh-Feldt's corrections, means of levels, and paired tests of levels where a factor's corrected p is\n"
+    "small, adjusted after Holm. People who lack a cell are named and left out.\n"
     "  --conf C     confidence of the intervals (0.95)\n"
     "  --simulated  analyse simulated sessions, which are left out otherwise\n"
     "  --json       one object with the questions in an array\n";
@@ -19,6 +24,33 @@ static const char help[] =
 static const char *label(const struct sample *sample, size_t condition)
 {
     return sample->conditions[condition].label;
+}
+
+// The same changes by ranks, and their size.
+static bool print_ranks(const struct sample *sample, const struct rating_question *q, double conf)
+{
+    char ci[32], d_ci[32];
+    snprintf(ci, sizeof ci, "%g %% CI", 100 * conf);
+    snprintf(d_ci, sizeof d_ci, "%g %% CI d_z", 100 * conf);
+    const char *const headings[] = {"<first", "V",   "not 0", "Wilcoxon p", "Hodges-Lehmann",
+                                    ci,       "d_z", d_ci,    "Hedges' g",  NULL};
+    struct table t;
+    table_init(&t, headings);
+    for (size_t i = 0; i < q->group_count; i++) {
+        const struct rating_group *g = &q->groups[i];
+        table_cell(&t, "%s", label(sample, g->first_condition));
+        table_cell(&t, "%g", g->rank.statistic);
+        table_cell(&t, "%zu", g->rank.n);
+        table_cell(&t, "%.4f%s", g->rank.p_value, g->rank.exact ? "" : " (normal)");
+        table_cell(&t, "%.2f", g->rank.estimate);
+        table_cell(&t, "%.2f to %.2f", g->rank.ci_low, g->rank.ci_high);
+        table_cell(&t, "%.2f", g->effect.d);
+        table_cell(&t, "%.2f to %.2f", g->effect.ci_low, g->effect.ci_high);
+        table_cell(&t, "%.2f", g->effect.g);
+    }
+    bool ok = table_print(&t, stdout);
+    table_finish(&t);
+    return ok;
 }
 
 static bool print_question(const struct sample *sample, const struct rating_question *q, double conf)
@@ -47,11 +79,16 @@ static bool print_question(const struct sample *sample, const struct rating_ques
     printf("%s (%g to %g)\n", q->question, q->scale_min, q->scale_max);
     bool ok = table_print(&t, stdout);
     table_finish(&t);
+    ok = print_ranks(sample, q, conf) && ok;
     const struct stat_ttest *w = &q->first_between;
+    const struct stat_effect *d = &q->between_effect;
     if (q->compared)
-        printf("First ratings, %s minus %s: %.2f, %g %% CI %.2f to %.2f, t(%.2f) = %.3f, p %.4f (Welch)\n",
-               label(sample, q->groups[0].first_condition), label(sample, q->groups[1].first_condition),
-               w->estimate, 100 * conf, w->ci_low, w->ci_high, w->df, w->t, w->p_value);
+        printf(
+            "First ratings, %s minus %s: %.2f, %g %% CI %.2f to %.2f, t(%.2f) = %.3f, p %.4f (Welch), d %.2f, "
+            "%g %% CI %.2f to %.2f\n",
+            label(sample, q->groups[0].first_condition), label(sample, q->groups[1].first_condition),
+            w->estimate, 100 * conf, w->ci_low, w->ci_high, w->df, w->t, w->p_value, d->d, 100 * conf,
+            d->ci_low, d->ci_high);
     else
         printf("First ratings are not compared: that needs two order groups, there %s %zu.\n",
                q->group_count == 1 ? "is" : "are", q->group_count);
@@ -71,19 +108,12 @@ static void print_notes(const struct sample *sample, const struct ratings *r)
     if (r->no_condition)
         printf("Left out, ratings that belong to no option: %" PRId64 ".\n", r->no_condition);
     if (r->more)
-        printf("Left out, ratings of no before-and-after pair: %" PRId64 ".\n", r->more);
-}
-
-static void ttest_json(struct json *json, const char *key, const struct stat_ttest *t)
-{
-    json_open(json, key, '{');
-    json_number(json, "estimate", t->estimate);
-    json_number(json, "t", t->t);
-    json_number(json, "df", t->df);
-    json_number(json, "p_value", t->p_value);
-    json_number(json, "ci_low", t->ci_low);
-    json_number(json, "ci_high", t->ci_high);
-    json_close(json, '}');
+        printf("Left out, ratings of nothing they could be compared with: %" PRId64 ".\n", r->more);
+    if (r->options.unpaired)
+        printf("Left out, ratings of one option of a trial only: %" PRId64 ".\n", r->options.unpaired);
+    if (r->not_finite)
+        printf("Left out, ratings that are not finite numbers: %" PRId64 "; no program of ours writes them.\n",
+               r->not_finite);
 }
 
 static void group_json(struct json *json, const struct sample *sample, const struct rating_group *g)
@@ -96,7 +126,9 @@ static void group_json(struct json *json, const struct sample *sample, const str
     json_number(json, "first_sd", g->first_of.sd);
     json_number(json, "second_mean", g->second_of.mean);
     json_number(json, "second_sd", g->second_of.sd);
-    ttest_json(json, "second_minus_first", &g->change);
+    ratings_ttest_json(json, "second_minus_first", &g->change);
+    ratings_rank_json(json, "wilcoxon", &g->rank);
+    ratings_effect_json(json, "d_z", &g->effect);
     json_close(json, '}');
 }
 
@@ -117,17 +149,29 @@ static void print_json(const struct sample *sample, const struct ratings *r)
         for (size_t j = 0; j < q->group_count; j++)
             group_json(&json, sample, &q->groups[j]);
         json_close(&json, ']');
-        if (q->compared)
-            ttest_json(&json, "first_between_groups", &q->first_between);
+        if (q->compared) {
+            ratings_ttest_json(&json, "first_between_groups", &q->first_between);
+            ratings_effect_json(&json, "first_between_groups_d", &q->between_effect);
+        }
         json_integer(&json, "unpaired_sessions", q->unpaired);
         json_close(&json, '}');
     }
+    json_close(&json, ']');
+    json_open(&json, "options", '[');
+    for (size_t i = 0; i < r->options.count; i++)
+        ratings_options_json(&json, sample, &r->options.items[i]);
+    json_close(&json, ']');
+    json_open(&json, "factorial", '[');
+    for (size_t i = 0; i < r->factorials.count; i++)
+        ratings_factorial_json(&json, sample, &r->factorials.items[i]);
     json_close(&json, ']');
     json_open(&json, "left_out", '{');
     json_integer(&json, "excluded", r->excluded);
     json_integer(&json, "not_done", r->not_done);
     json_integer(&json, "no_option", r->no_condition);
     json_integer(&json, "unpaired_by_design", r->more);
+    json_integer(&json, "one_option_only", r->options.unpaired);
+    json_integer(&json, "not_finite", r->not_finite);
     json_close(&json, '}');
     json_close(&json, '}');
     putchar('\n');
@@ -144,7 +188,7 @@ static int run(const struct command *command, int argc, char **argv)
     struct ratings r;
     if (!ratings_load(&r, &sample, arguments.conf, error, sizeof error)) {
         code = command_fail(command, EXIT_FAILED, "%s", error);
-    } else if (r.question_count == 0) {
+    } else if (!ratings_any(&r)) {
         code = command_fail(command, EXIT_FAILED, "%s: no rating of an option was recorded that counts",
                             store_reader_path(sample.files[0]));
     } else if (arguments.json) {
@@ -155,6 +199,10 @@ static int run(const struct command *command, int argc, char **argv)
         bool ok = true;
         for (size_t i = 0; i < r.question_count; i++)
             ok = print_question(&sample, &r.questions[i], r.conf) && ok;
+        for (size_t i = 0; i < r.options.count; i++)
+            ok = ratings_print_options(&sample, &r.options.items[i], r.conf) && ok;
+        for (size_t i = 0; i < r.factorials.count; i++)
+            ok = ratings_print_factorial(&sample, &r.factorials.items[i], r.conf) && ok;
         print_notes(&sample, &r);
         code = ok ? command_finish(command) : command_fail(command, EXIT_FAILED, "not enough memory");
     }
@@ -163,5 +211,5 @@ static int run(const struct command *command, int argc, char **argv)
     return code;
 }
 
-const struct command command_ratings = {"ratings", "ratings before and after, in two orders, by t-tests", help,
-                                        run};
+const struct command command_ratings = {"ratings", "ratings: before and after, of both options, over factors",
+                                        help, run};

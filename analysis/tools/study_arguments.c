@@ -71,7 +71,8 @@ void study_notes(const struct sample *sample)
     if (sample->left_out_simulated)
         printf("Left out, simulated sessions (--simulated analyses them): %zu.\n", sample->left_out_simulated);
     if (sample_repeaters(sample))
-        printf("People with several sessions: %zu; ratings take each session as a person of its own.\n",
+        printf("People with several sessions: %zu; before and after, ratings take each session as a person of "
+               "its own.\n",
                sample_repeaters(sample));
     for (size_t i = 0; i < sample->session_count; i++) {
         const struct sample_session *s = &sample->sessions[i];

@@ -68,7 +68,7 @@ static void the_limit_is_smooth(void **state)
     double x[STAT_WILCOXON_EXACT + 1];
     for (int i = 0; i <= STAT_WILCOXON_EXACT; i++)
         x[i] = (i * 37 % 101) - 47.1 + 0.25 * (i % 3); // no zero
-    x[STAT_WILCOXON_EXACT] = 0.01; // the smallest: all other ranks move up by one
+    x[STAT_WILCOXON_EXACT] = 0.01;                     // the smallest: all other ranks move up by one
     struct stat_wilcoxon exact = stat_wilcoxon(x, STAT_WILCOXON_EXACT, NULL),
                          normal = stat_wilcoxon(x, STAT_WILCOXON_EXACT + 1, NULL);
     assert_true(exact.exact && !normal.exact);
