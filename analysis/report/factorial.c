@@ -130,6 +130,26 @@ static bool finish_cells(struct factorial *f)
     return x && f->cell_of;
 }
 
+// Each person once, whatever was rated.
+static bool finish_overall(struct factorial *f, size_t people)
+{
+    double *sum = calloc(people + 1, sizeof *sum), *count = calloc(people + 1, sizeof *count);
+    size_t used = 0;
+    for (size_t i = 0; sum && count && i < f->rating_count; i++) {
+        sum[f->ratings[i].person] += f->ratings[i].value;
+        count[f->ratings[i].person]++;
+    }
+    for (size_t i = 0; sum && count && i < people; i++)
+        if (count[i] > 0)
+            sum[used++] = sum[i] / count[i];
+    bool ok = sum && count;
+    if (ok)
+        f->overall = stat_moments(sum, used);
+    free(sum);
+    free(count);
+    return ok;
+}
+
 static int by_name(const void *x, const void *y)
 {
     const struct factorial *a = x, *b = y;
@@ -145,7 +165,7 @@ bool factorial_finish(struct factorial_list *list, const struct sample *sample, 
     for (size_t i = 0; ok && i < list->count; i++) {
         struct factorial *f = &list->items[i];
         size_t levels[STAT_ANOVA_FACTORS];
-        ok = factorial_design(f, sample);
+        ok = finish_overall(f, sample->person_count) && factorial_design(f, sample);
         if (!ok || f->refusal[0])
             continue;
         for (size_t j = 0; j < f->factor_count; j++)
@@ -155,6 +175,16 @@ bool factorial_finish(struct factorial_list *list, const struct sample *sample, 
             ok = finish_factor(f, j, conf);
     }
     return ok;
+}
+
+void factorial_refusal(const struct factorial *f, char out[512])
+{
+    char sd[48] = "";
+    if (!isnan(f->overall.sd))
+        snprintf(sd, sizeof sd, " (SD %.2f)", f->overall.sd);
+    snprintf(out, 512, "No analysis of %zu rating%s of %zu participant%s, mean %.2f%s: %s.", f->rating_count,
+             f->rating_count == 1 ? "" : "s", f->overall.n, f->overall.n == 1 ? "" : "s", f->overall.mean, sd,
+             f->refusal);
 }
 
 void factorial_effect_name(const struct factorial *f, unsigned factors, const char *cross, char out[256])

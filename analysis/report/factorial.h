@@ -49,9 +49,10 @@ struct factorial {
     size_t text_count;
     const char **texts; // the factors' JSON of each cell, as they came
 
-    char refusal[256];   // why there is no analysis; "" where there is one
-    char dropped[256];   // factors that are left out, and why; "" for none
-    size_t factor_count; // of those analysed
+    struct stat_moments overall; // of people's means over all their ratings, incomplete people too
+    char refusal[256];           // why there is no analysis; "" where there is one
+    char dropped[256];           // factors that are left out, and why; "" for none
+    size_t factor_count;         // of those analysed
     struct factorial_factor factors[STAT_ANOVA_FACTORS];
     size_t cells;
     size_t people;                // complete ones
@@ -73,6 +74,9 @@ bool factorial_add(struct factorial_list *list, struct sample *sample, const str
                    size_t person); // false where memory ran out
 bool factorial_finish(struct factorial_list *list, const struct sample *sample, double conf);
 void factorial_free(struct factorial_list *list);
+
+// Why there is no analysis, and what can be said nevertheless.
+void factorial_refusal(const struct factorial *f, char out[512]);
 
 // "scene x region", for the bits of an effect; `cross` stands between names.
 void factorial_effect_name(const struct factorial *f, unsigned factors, const char *cross, char out[256]);

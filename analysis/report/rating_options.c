@@ -100,7 +100,7 @@ static int by_cell(const void *x, const void *y)
     return order ? order : strcmp(a->factors, b->factors);
 }
 
-static void finish_question(struct rating_options *q, double conf)
+static void finish_question(struct rating_options *q, double conf, bool pratt)
 {
     double *p = q->cell_count ? malloc(2 * q->cell_count * sizeof *p) : NULL;
     if (q->cell_count > 1)
@@ -116,7 +116,7 @@ static void finish_question(struct rating_options *q, double conf)
         c->difference = stat_ttest_paired(c->test_value, c->reference_value, c->n,
                                           &(struct stat_ttest_options){.conf = conf});
         c->rank = stat_wilcoxon_paired(c->test_value, c->reference_value, c->n,
-                                       &(struct stat_wilcoxon_options){.conf = conf});
+                                       &(struct stat_wilcoxon_options){.conf = conf, .pratt = pratt});
         c->effect = stat_effect_paired(c->test_value, c->reference_value, c->n, conf);
         c->p_holm = (double)NAN;
         if (p)
@@ -129,10 +129,10 @@ static void finish_question(struct rating_options *q, double conf)
     free(p);
 }
 
-void rating_options_finish(struct rating_options_list *list, double conf)
+void rating_options_finish(struct rating_options_list *list, double conf, bool pratt)
 {
     for (size_t i = 0; i < list->count; i++)
-        finish_question(&list->items[i], conf);
+        finish_question(&list->items[i], conf, pratt);
 }
 
 void rating_options_free(struct rating_options_list *list)

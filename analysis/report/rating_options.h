@@ -51,7 +51,7 @@ bool rating_options_add(struct rating_options_list *list, struct sample *sample,
                         size_t condition);
 // After the last rating of a file.
 void rating_options_close(struct rating_options_list *list, struct rating_options_open *open);
-void rating_options_finish(struct rating_options_list *list, double conf);
+void rating_options_finish(struct rating_options_list *list, double conf, bool pratt);
 void rating_options_free(struct rating_options_list *list);
 
 #endif

@@ -141,7 +141,7 @@ static int by_first(const void *x, const void *y)
     return (a->second_condition > b->second_condition) - (a->second_condition < b->second_condition);
 }
 
-static void finish(struct rating_question *q, double conf)
+static void finish(struct rating_question *q, double conf, bool pratt)
 {
     const struct stat_ttest_options options = {.conf = conf};
     qsort(q->groups, q->group_count, sizeof q->groups[0], by_first);
@@ -150,8 +150,8 @@ static void finish(struct rating_question *q, double conf)
         g->first_of = stat_moments(g->first, g->n);
         g->second_of = stat_moments(g->second, g->n);
         g->change = stat_ttest_paired(g->second, g->first, g->n, &options);
-        g->rank =
-            stat_wilcoxon_paired(g->second, g->first, g->n, &(struct stat_wilcoxon_options){.conf = conf});
+        g->rank = stat_wilcoxon_paired(g->second, g->first, g->n,
+                                       &(struct stat_wilcoxon_options){.conf = conf, .pratt = pratt});
         g->effect = stat_effect_paired(g->second, g->first, g->n, conf);
     }
     q->compared = q->group_count == 2;
@@ -162,7 +162,8 @@ static void finish(struct rating_question *q, double conf)
     q->between_effect = stat_effect_two_samples(a->first, a->n, b->first, b->n, conf);
 }
 
-bool ratings_load(struct ratings *out, struct sample *sample, double conf, char *error, size_t error_size)
+bool ratings_load(struct ratings *out, struct sample *sample, double conf, bool pratt, char *error,
+                  size_t error_size)
 {
     *out = (struct ratings){.conf = conf};
     bool ok = true;
@@ -181,8 +182,8 @@ bool ratings_load(struct ratings *out, struct sample *sample, double conf, char 
     }
     for (size_t i = 0; i < out->question_count; i++)
         if (out->questions[i].group_count)
-            finish(&out->questions[i], conf);
-    rating_options_finish(&out->options, conf);
+            finish(&out->questions[i], conf, pratt);
+    rating_options_finish(&out->options, conf, pratt);
     error[0] = '\0';
     return true;
 }

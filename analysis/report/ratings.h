@@ -51,7 +51,9 @@ struct ratings {
     int64_t not_done, other_kinds, excluded, no_condition, more, not_finite;
 };
 
-bool ratings_load(struct ratings *out, struct sample *sample, double conf, char *error, size_t error_size);
+// `pratt`: signed-rank tests rank zeros before they drop them.
+bool ratings_load(struct ratings *out, struct sample *sample, double conf, bool pratt, char *error,
+                  size_t error_size);
 void ratings_free(struct ratings *ratings);
 bool ratings_any(const struct ratings *ratings); // whether there is anything to show
 

@@ -165,7 +165,7 @@ static bool load_tests(struct report_tests *out, struct report *r, enum sample_r
 {
     sample_apply(r->sample, rules);
     bool ok = choices_load(&out->choices, r->sample, r->conf, error, error_size) &&
-              ratings_load(&out->ratings, r->sample, r->conf, error, error_size);
+              ratings_load(&out->ratings, r->sample, r->conf, false, error, error_size);
     sample_apply(r->sample, SAMPLE_RULES);
     return ok;
 }
@@ -173,7 +173,7 @@ static bool load_tests(struct report_tests *out, struct report *r, enum sample_r
 static bool load(struct report *r, char *error, size_t error_size)
 {
     return choices_load(&r->choices, r->sample, r->conf, error, error_size) &&
-           ratings_load(&r->ratings, r->sample, r->conf, error, error_size) &&
+           ratings_load(&r->ratings, r->sample, r->conf, false, error, error_size) &&
            checks_load(&r->checks, r->sample, r->conf, error, error_size) &&
            frames_load(&r->frames, r->sample, error, error_size) &&
            audit_load(&r->audit, r->sample, error, error_size) &&

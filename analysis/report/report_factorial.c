@@ -174,9 +174,11 @@ void report_factorial(const struct report *r, const struct factorial *f, const s
     fputs("</h3>\n", r->out);
     left_out(r, f);
     fputs("<p>", r->out);
-    if (f->refusal[0])
-        html_printf(r->out, "No analysis of %zu ratings: %s.", f->rating_count, f->refusal);
-    else if (f->least == f->most)
+    if (f->refusal[0]) {
+        char words[512];
+        factorial_refusal(f, words);
+        html_printf(r->out, "%s", words);
+    } else if (f->least == f->most)
         html_printf(r->out, "%zu participants with %zu rating%s in each of %zu cells.", f->people, f->least,
                     f->least == 1 ? "" : "s", f->cells);
     else

@@ -78,8 +78,8 @@ static void tables(const struct report *r, const struct rating_options *q, size_
         out,
         "</tbody></table></div>\n<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"Ratings of "
         "both options by ranks\"><table>\n<caption>The same differences by Wilcoxon\u2019s signed ranks, and "
-        "their size</caption>\n<thead><tr><th scope=\"col\" class=\"word\">cell</th><th scope=\"col\">not "
-        "0</th>"
+        "their size</caption>\n<thead><tr><th scope=\"col\" class=\"word\">cell</th><th "
+        "scope=\"col\">not&nbsp;0</th>"
         "<th scope=\"col\">p</th><th scope=\"col\">Hodges\u2013Lehmann</th><th scope=\"col\">%g&nbsp;%% "
         "interval</th><th scope=\"col\">d<sub>z</sub></th><th scope=\"col\">%g&nbsp;%% interval</th></tr>"
         "</thead>\n<tbody>\n",
@@ -106,9 +106,10 @@ void report_rating_options(const struct report *r, const struct rating_options *
             to++;
         tables(r, q, from, to);
     }
-    fputs(
-        "<p>p Holm: the t-test\u2019s p adjusted over all cells of this question; shaded where it is at most ",
-        out);
+    fputs("<p>The signed-rank test drops differences of 0; the Hodges\u2013Lehmann estimate and its interval "
+          "keep them. "
+          "p Holm: the t-test\u2019s p adjusted over all cells of this question; shaded where it is at most ",
+          out);
     html_printf(out, "%.4g.", 1 - r->conf);
     fputs("</p>\n", out);
 }

@@ -63,7 +63,8 @@ static void ranks_table(const struct report *r, const struct rating_question *q)
         out,
         "<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"Changes by ranks and their "
         "size\"><table class=\"wrap\">\n<caption>The same changes by Wilcoxon\u2019s signed ranks, and their "
-        "size</caption>\n<thead><tr><th scope=\"col\" class=\"word\">first</th><th scope=\"col\">n, not 0</th>"
+        "size</caption>\n<thead><tr><th scope=\"col\" class=\"word\">first</th><th "
+        "scope=\"col\">not&nbsp;0</th>"
         "<th scope=\"col\">V</th><th scope=\"col\">p</th><th scope=\"col\">Hodges\u2013Lehmann</th>"
         "<th scope=\"col\">%g&nbsp;%% interval</th><th scope=\"col\">d<sub>z</sub></th><th scope=\"col\">"
         "%g&nbsp;%% interval</th><th scope=\"col\">Hedges\u2019 g</th></tr></thead>\n<tbody>\n",

@@ -56,7 +56,7 @@ double stat_noncentral_t_lower(double t, double df, double ncp)
 // The probability falls as the noncentrality grows: regula falsi after Illinois within a bracket.
 double stat_noncentral_t_limit(double t, double df, double p)
 {
-    if (!isfinite(t) || !(df >= 1 && df <= 1e9) || !(p > 0 && p < 1))
+    if (!isfinite(t) || !(df >= 1 && df <= 1e9) || !(p >= 1e-10 && p <= 0.5))
         return (double)NAN;
     double step = 1 + fabs(t) / sqrt(2 * df), low = t, high = t, at_low, at_high, middle = t;
     while ((at_low = stat_noncentral_t_lower(t, df, low) - p) < 0)

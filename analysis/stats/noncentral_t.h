@@ -9,8 +9,8 @@
 // P(T <= t).
 double stat_noncentral_t_lower(double t, double df, double ncp);
 
-// The noncentrality under which a T of at most t has the probability p, in (0, 1): the upper limit of a
-// two-sided interval of confidence 1 - 2 p. The lower limit is minus that of -t.
+// The noncentrality under which a T of at most t has the probability p, from 1e-10 to 0.5: the upper limit of a
+// two-sided interval of confidence 1 - 2 p. The lower limit is minus that of -t. NaN for another p.
 double stat_noncentral_t_limit(double t, double df, double p);
 
 #endif

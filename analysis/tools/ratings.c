@@ -7,9 +7,10 @@
 
 #include <inttypes.h>
 #include <stdio.h>
+#include <string.h>
 
 static const char help[] =
-    "usage: fovstats ratings DB... [--conf C] [--simulated] [--json]\n"
+    "usage: fovstats ratings DB... [--conf C] [--pratt] [--simulated] [--json]\n"
     "\n"
     "Ratings before and after, in two orders: first ratings between the order groups (Welch's t-test), and\n"
     "second minus first within each group (paired t-test, Wilcoxon's signed ranks, d_z). The groups are never\n"
@@ -18,6 +19,8 @@ static const char help[] =
     "Huynh-Feldt's corrections, means of levels, and paired tests of levels where a factor's corrected p is\n"
     "small, adjusted after Holm. People who lack a cell are named and left out.\n"
     "  --conf C     confidence of the intervals (0.95)\n"
+    "  --pratt      signed-rank tests rank differences of 0 before they drop them (Pratt 1959), else drop them "
+    "first\n"
     "  --simulated  analyse simulated sessions, which are left out otherwise\n"
     "  --json       one object with the questions in an array\n";
 
@@ -177,16 +180,33 @@ static void print_json(const struct sample *sample, const struct ratings *r)
     putchar('\n');
 }
 
+// Takes an option of this subcommand alone out of its arguments.
+static bool take_flag(int *argc, char **argv, const char *name)
+{
+    int left = 0;
+    bool given = false, options = true;
+    for (int i = 0; i < *argc; i++) {
+        bool flag = options && strcmp(argv[i], name) == 0;
+        options = options && strcmp(argv[i], "--") != 0;
+        given = given || flag;
+        if (!flag)
+            argv[left++] = argv[i];
+    }
+    *argc = left;
+    return given;
+}
+
 static int run(const struct command *command, int argc, char **argv)
 {
     struct study_arguments arguments;
     struct sample sample;
+    bool pratt = take_flag(&argc, argv, "--pratt");
     int code = study_arguments_load(command, argc, argv, false, &arguments, &sample);
     if (code >= 0)
         return code;
     char error[SAMPLE_ERROR_SIZE];
     struct ratings r;
-    if (!ratings_load(&r, &sample, arguments.conf, error, sizeof error)) {
+    if (!ratings_load(&r, &sample, arguments.conf, pratt, error, sizeof error)) {
         code = command_fail(command, EXIT_FAILED, "%s", error);
     } else if (!ratings_any(&r)) {
         code = command_fail(command, EXIT_FAILED, "%s: no rating of an option was recorded that counts",

@@ -96,7 +96,9 @@ bool ratings_print_factorial(const struct sample *sample, const struct factorial
                sample->people[f->left[i].person].code, f->left[i].missing, f->cells);
     bool ok = true;
     if (f->refusal[0]) {
-        printf("No analysis of %zu ratings: %s.\n", f->rating_count, f->refusal);
+        char words[512];
+        factorial_refusal(f, words);
+        puts(words);
     } else {
         printf("%zu participants, %zu cells, ", f->people, f->cells);
         printf(f->least == f->most ? "%zu in each\n" : "%zu to %zu in each\n", f->least, f->most);
@@ -183,6 +185,8 @@ void ratings_factorial_json(struct json *json, const struct sample *sample, cons
     json_text(json, "factors_left_out", f->dropped);
     json_integer(json, "ratings", (int64_t)f->rating_count);
     json_integer(json, "participants", (int64_t)f->people);
+    json_number(json, "overall_mean", f->overall.mean);
+    json_number(json, "overall_sd", f->overall.sd);
     json_open(json, "incomplete", '[');
     for (size_t i = 0; i < f->left_count; i++) {
         json_open(json, NULL, '{');

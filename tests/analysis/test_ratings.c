@@ -198,6 +198,16 @@ static void before_and_after_by_ranks(void **state)
         expect_number(json, marks[i], "\"d_z\"", "d", name);
     }
     free(json);
+    study_file_sql("s.db",
+                   "UPDATE rating SET value = 10 WHERE trial_id = 24; UPDATE rating SET value = 5 WHERE "
+                   "trial_id = 84");
+    json = json_of("s.db");
+    expect_number(json, marks[1], "\"wilcoxon\"", "p_value", "changed.rank_p");
+    free(json);
+    struct program_result r = FOVSTATS("ratings", "--pratt", "s.db", "--json");
+    assert_int_equal(r.code, 0);
+    expect_number(r.out, marks[1], "\"wilcoxon\"", "p_value", "changed.pratt_p");
+    program_free(&r);
 }
 
 static char *slurp(const char *path)
@@ -256,6 +266,18 @@ static void the_report_shows_them(void **state)
                                            "ratings of one option of a trial only: 1", NULL});
 }
 
+static void other_rules_change_them(void **state)
+{
+    (void)state;
+    study_file_make("x.db", &(struct study_desc){.bare = true});
+    study_file_sql("x.db", rates);
+    study_file_sql("x.db",
+                   "INSERT INTO exclusion VALUES(NULL, NULL, 1, NULL, 'gaze_loss', 'planned', 'why', 'us', "
+                   "'2026')");
+    expect_in_report("x.db", (const char *const[]){"artefacts, flights: region \u00d7 epsilon",
+                                                   "F = 48.13 (n 7)", "(n 6)", NULL});
+}
+
 static void what_cannot_be_analysed_is_said(void **state)
 {
     (void)state;
@@ -265,7 +287,9 @@ static void what_cannot_be_analysed_is_said(void **state)
     expect_in_text("b.db", "nobody rated two levels of epsilon, and factors between people are not analysed");
     expect_in_report("b.db", (const char *const[]){"nobody rated two levels of epsilon", NULL});
     study_file_sql("b.db", "DELETE FROM rating WHERE trial_id IN (SELECT id FROM made WHERE i > 1 OR r > 0)");
-    expect_in_text("b.db", "there is no factor with two levels to compare");
+    expect_in_text(
+        "b.db",
+        "No analysis of 2 ratings of 1 participant, mean 5.00: there is no factor with two levels to compare.");
     study_file_make("c.db", &(struct study_desc){.bare = true});
     study_file_sql("c.db", rates);
     study_file_sql("c.db", "UPDATE rating SET value = 4");
@@ -289,11 +313,10 @@ static void not_finite_is_said(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(factors_agree_with_r),
-                                       cmocka_unit_test(options_agree_with_r),
-                                       cmocka_unit_test(before_and_after_by_ranks),
-                                       cmocka_unit_test(the_report_shows_them),
-                                       cmocka_unit_test(what_cannot_be_analysed_is_said),
-                                       cmocka_unit_test(not_finite_is_said)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(factors_agree_with_r),      cmocka_unit_test(options_agree_with_r),
+        cmocka_unit_test(before_and_after_by_ranks), cmocka_unit_test(the_report_shows_them),
+        cmocka_unit_test(other_rules_change_them),   cmocka_unit_test(what_cannot_be_analysed_is_said),
+        cmocka_unit_test(not_finite_is_said)};
     return cmocka_run_group_tests(tests, enter_folder, leave_folder);
 }

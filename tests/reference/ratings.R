@@ -54,8 +54,9 @@ for (k in 1:3) {
 # Both options of a trial in the cells I and II; person 6 answered cell II twice, person 5 rated one option of cell I.
 test <- function(i, c) 1 + (i * 5 + c * 2) %% 7
 reference <- function(i, c) 3 + (i * 3 + c * 4) %% 6
-enumerate <- function(d) {
-  d <- d[d != 0]; r <- rank(abs(d)); v <- sum(r[d > 0])
+enumerate <- function(d, pratt = FALSE) {
+  if (!pratt) d <- d[d != 0]
+  r <- rank(abs(d)); v <- sum(r[d > 0]); r <- r[d != 0]
   sums <- 0
   for (x in r) sums <- c(sums, sums + x)
   min(1, 2 * min(mean(sums <= v + 1e-9), mean(sums >= v - 1e-9)))
@@ -85,4 +86,9 @@ add("test_first.d", mean(change) / sd(change))
 change <- c(-2, -2, -1, -1, -1, -1, 0, 0, 0)
 add("regular_first.rank_p", enumerate(change))
 add("regular_first.d", mean(change) / sd(change))
+# Person 2 up by 3 and person 8 down by 2: zeros that take their ranks along change p
+change <- c(1, 3, 1, 1, 1, 1, 1, -2, -1, 0, 0)
+stopifnot(enumerate(change) != enumerate(change, TRUE))
+add("changed.rank_p", enumerate(change))
+add("changed.pratt_p", enumerate(change, TRUE))
 writeLines(out, "ratings.csv")
