@@ -41,7 +41,7 @@ bool factorial_add(struct factorial_list *list, struct sample *sample, const str
     }
     if (!sample_grow(&f->ratings, f->rating_count, sizeof f->ratings[0]))
         return false;
-    f->ratings[f->rating_count++] = (struct factorial_rating){person, cell, row->value};
+    f->ratings[f->rating_count++] = (struct factorial_rating){person, cell, row->value, 0};
     list->used++;
     return true;
 }

@@ -33,8 +33,9 @@ struct factorial_factor {
 };
 
 struct factorial_rating {
-    size_t person, cell;
+    size_t person, cell; // of `texts`
     double value;
+    size_t place; // of `cells`, where there is an analysis
 };
 
 struct factorial_left {     // an incomplete person

@@ -203,14 +203,15 @@ static bool fill(struct factorial *f, const struct keys *keys, size_t people)
     size_t *count = calloc(f->cells, sizeof *count);
     f->values = calloc(people * f->cells, sizeof *f->values);
     bool ok = sum && count && f->values;
+    for (size_t i = 0; i < f->rating_count; i++)
+        f->ratings[i].place = cell_of(keys, f->ratings[i].cell);
     for (size_t person = 0; ok && person < people; person++) {
         memset(sum, 0, f->cells * sizeof *sum);
         memset(count, 0, f->cells * sizeof *count);
         for (size_t i = 0; i < f->rating_count; i++)
             if (f->ratings[i].person == person) {
-                size_t cell = cell_of(keys, f->ratings[i].cell);
-                sum[cell] += f->ratings[i].value;
-                count[cell]++;
+                sum[f->ratings[i].place] += f->ratings[i].value;
+                count[f->ratings[i].place]++;
             }
         ok = keep_person(f, person, sum, count);
     }

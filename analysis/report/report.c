@@ -107,21 +107,36 @@ static bool draw_ratings(struct report *r, char *error, size_t error_size)
     return true;
 }
 
+static bool draw_factorial(struct report *r, size_t i, bool narrow, char *error, size_t error_size)
+{
+    const struct factorial *f = &r->ratings.factorials.items[i];
+    struct figure_pair *means = &r->factorial_figures[i], *answers = &r->likert_figures[i];
+    char id[32], other[32];
+    snprintf(id, sizeof id, "factorial-%zu-%c", i, narrow ? 'n' : 'w');
+    snprintf(other, sizeof other, "likert-%zu-%c", i, narrow ? 'n' : 'w');
+    struct figure_text mean_text = {id, "Mean ratings per level of each factor",
+                                    "A dot and an interval per level; the tables below have every number.",
+                                    narrow ? "narrow" : "wide"},
+                       answer_text = {
+                           other, "Answers per level of each factor",
+                           "A bar per level, from the lowest answer on the left to the highest; shares "
+                           "below and above the middle stand at its ends.",
+                           narrow ? "narrow" : "wide"};
+    if (!figure_factorial(f, &(struct figure_desc){narrow, &mean_text}, narrow ? &means->narrow : &means->wide,
+                          error, error_size))
+        return false;
+    return !figure_likert_possible(f) ||
+           figure_likert(f, &(struct figure_desc){narrow, &answer_text},
+                         narrow ? &answers->narrow : &answers->wide, error, error_size);
+}
+
 static bool draw_factorials(struct report *r, char *error, size_t error_size)
 {
     const struct factorial_list *list = &r->ratings.factorials;
     for (size_t i = 0; i < list->count && i < REPORT_QUESTIONS; i++)
-        for (int narrow = 0; !list->items[i].refusal[0] && narrow < 2; narrow++) {
-            char id[32];
-            snprintf(id, sizeof id, "factorial-%zu-%c", i, narrow ? 'n' : 'w');
-            struct figure_text text = {id, "Mean ratings per level of each factor",
-                                       "A dot and an interval per level; the tables below have every number.",
-                                       narrow ? "narrow" : "wide"};
-            struct figure_desc desc = {narrow, &text};
-            char **svg = narrow ? &r->factorial_figures[i].narrow : &r->factorial_figures[i].wide;
-            if (!figure_factorial(&list->items[i], &desc, svg, error, error_size))
+        for (int narrow = 0; !list->items[i].refusal[0] && narrow < 2; narrow++)
+            if (!draw_factorial(r, i, narrow, error, error_size))
                 return false;
-        }
     return true;
 }
 
@@ -199,6 +214,8 @@ static void free_figures(struct report *r)
         free(r->ratings_figures[i].narrow);
         free(r->factorial_figures[i].wide);
         free(r->factorial_figures[i].narrow);
+        free(r->likert_figures[i].wide);
+        free(r->likert_figures[i].narrow);
     }
 }
 

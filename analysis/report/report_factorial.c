@@ -69,7 +69,7 @@ static void effects_table(const struct report *r, const struct factorial *f)
                                            "partial \u03b7\u00b2",
                                            "generalised \u03b7\u00b2",
                                            NULL};
-    open_table(r->out, "Analysis of variance within participants", "", headings, 1);
+    open_table(r->out, "Analysis of variance within participants", " class=\"wrap\"", headings, 1);
     for (size_t i = 0; i < f->anova.effect_count; i++)
         effect_row(r, f, &f->anova.effects[i]);
     close_table(r->out);
@@ -166,7 +166,8 @@ static void left_out(const struct report *r, const struct factorial *f)
     fputs(".</p>\n", r->out);
 }
 
-void report_factorial(const struct report *r, const struct factorial *f, const struct figure_pair *figure)
+void report_factorial(const struct report *r, const struct factorial *f, const struct figure_pair *means,
+                      const struct figure_pair *answers)
 {
     fputs("<h3>", r->out);
     html_printf(r->out, "Question \u201c%s\u201d, %g to %g, block \u201c%s\u201d", f->question, f->scale_min,
@@ -187,9 +188,15 @@ void report_factorial(const struct report *r, const struct factorial *f, const s
     fputs("</p>\n", r->out);
     if (f->refusal[0])
         return;
-    if (figure)
+    if (answers)
         report_figure(
-            r, figure,
+            r, answers,
+            "Shares of all answers per level, over all other factors. Orange: below the middle of the scale, "
+            "the darker the lower; blue: above it, the darker the higher; gray: the middle, half on either "
+            "side. Numbers: the shares below and above.");
+    if (means)
+        report_figure(
+            r, means,
             "Mean ratings per level, over all other factors, on the whole scale. Lines: intervals within "
             "people (Cousineau\u2013Morey), which compare the levels of one factor and do not say where a "
             "mean lies.");

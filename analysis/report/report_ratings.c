@@ -151,5 +151,6 @@ void report_ratings(const struct report *r)
         report_rating_options(r, &r->ratings.options.items[i]);
     for (size_t i = 0; i < r->ratings.factorials.count; i++)
         report_factorial(r, &r->ratings.factorials.items[i],
-                         i < REPORT_QUESTIONS ? &r->factorial_figures[i] : NULL);
+                         i < REPORT_QUESTIONS ? &r->factorial_figures[i] : NULL,
+                         i < REPORT_QUESTIONS ? &r->likert_figures[i] : NULL);
 }

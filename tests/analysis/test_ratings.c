@@ -252,7 +252,12 @@ static void the_report_shows_them(void **state)
     expect_in_text("f.db", "7 participants, 6 cells, 1 to 2 in each");
     expect_in_report("f.db", (const char *const[]){"region \u00d7 epsilon", "<td>2, 12</td><td>48.129</td>",
                                                    "P08 (no rating in 1 of 6 cells)", "full \u2212 small",
-                                                   "id=\"factorial-0-w-title\"", "Cousineau", NULL});
+                                                   "id=\"factorial-0-w-title\"", "Cousineau",
+                                                   "id=\"likert-0-n-title\"", NULL});
+    char below[32], above[32]; // the ends of the bars
+    snprintf(below, sizeof below, "%.0f %%</text>", expected("small.percent_below"));
+    snprintf(above, sizeof above, "%.0f %%</text>", expected("full.percent_above"));
+    expect_in_report("f.db", (const char *const[]){below, above, NULL});
     // Words of a study stay words, in the table, in the figure and in the terminal.
     study_file_sql(
         "f.db", "UPDATE trial SET factors = replace(factors, 'small', '<b>`touch hacked`\\u001b') WHERE block "

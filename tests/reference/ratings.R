@@ -41,6 +41,8 @@ for (r in sort(regions)) {
   add(paste0(r, ".mean"), mean(by_region[, r]))
   add(paste0(r, ".within_half_width"), diff(t.test(z[, r])$conf.int) / 2 * sqrt(3 / 2))
 }
+add("small.percent_below", 100 * with(subset(rows, person != 8 & region == "small"), mean(y < 5.5)))
+add("full.percent_above", 100 * with(subset(rows, person != 8 & region == "full"), mean(y > 5.5)))
 pairs <- combn(sort(regions), 2)
 tests <- apply(pairs, 2, function(p) t.test(by_region[, p[1]], by_region[, p[2]], paired = TRUE), simplify = FALSE)
 holm <- p.adjust(sapply(tests, function(t) t$p.value), "holm")
