@@ -118,6 +118,7 @@ static void finish_question(struct rating_options *q, double conf, bool pratt)
         c->rank = stat_wilcoxon_paired(c->test_value, c->reference_value, c->n,
                                        &(struct stat_wilcoxon_options){.conf = conf, .pratt = pratt});
         c->effect = stat_effect_paired(c->test_value, c->reference_value, c->n, conf);
+        c->average = stat_effect_average(c->test_value, c->reference_value, c->n, conf);
         c->p_holm = (double)NAN;
         if (p)
             p[i] = c->difference.p_value;

@@ -20,8 +20,8 @@ struct rating_option_cell {
     struct stat_moments test_of, reference_of;
     struct stat_ttest difference; // test less reference; NaN where all differences are equal or n < 2
     struct stat_wilcoxon rank;
-    struct stat_effect effect; // d_z
-    double p_holm;             // of the t-test, over the cells of the question
+    struct stat_effect effect, average; // d_z and d_av
+    double p_holm;                      // of the t-test, over the cells of the question
 };
 
 struct rating_options {

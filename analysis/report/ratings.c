@@ -153,6 +153,7 @@ static void finish(struct rating_question *q, double conf, bool pratt)
         g->rank = stat_wilcoxon_paired(g->second, g->first, g->n,
                                        &(struct stat_wilcoxon_options){.conf = conf, .pratt = pratt});
         g->effect = stat_effect_paired(g->second, g->first, g->n, conf);
+        g->average = stat_effect_average(g->second, g->first, g->n, conf);
     }
     q->compared = q->group_count == 2;
     if (!q->compared)

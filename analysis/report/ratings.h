@@ -24,9 +24,9 @@ struct rating_group {
     size_t n; // pairs
     double *first, *second;
     struct stat_moments first_of, second_of;
-    struct stat_ttest change;  // second minus first, paired; NaN where all changes are equal or n < 2
-    struct stat_wilcoxon rank; // of the same changes
-    struct stat_effect effect; // d_z of the same
+    struct stat_ttest change;           // second minus first, paired; NaN where all changes are equal or n < 2
+    struct stat_wilcoxon rank;          // of the same changes
+    struct stat_effect effect, average; // d_z and d_av of the same
 };
 
 struct rating_question {

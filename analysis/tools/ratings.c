@@ -44,15 +44,19 @@ static bool print_ranks(const struct sample *sample, const struct rating_questio
         table_cell(&t, "%s", label(sample, g->first_condition));
         table_cell(&t, "%g", g->rank.statistic);
         table_cell(&t, "%zu", g->rank.n);
-        table_cell(&t, "%.4f%s", g->rank.p_value, g->rank.exact ? "" : " (normal)");
-        table_cell(&t, "%.2f", g->rank.estimate);
-        table_cell(&t, "%.2f to %.2f", g->rank.ci_low, g->rank.ci_high);
-        table_cell(&t, "%.2f", g->effect.d);
-        table_cell(&t, "%.2f to %.2f", g->effect.ci_low, g->effect.ci_high);
-        table_cell(&t, "%.2f", g->effect.g);
+        ratings_p(&t, g->rank.p_value);
+        ratings_number(&t, "%.2f", g->rank.estimate);
+        ratings_interval(&t, g->rank.ci_low, g->rank.ci_high);
+        ratings_number(&t, "%.2f", g->effect.d);
+        ratings_interval(&t, g->effect.ci_low, g->effect.ci_high);
+        ratings_number(&t, "%.2f", g->effect.g);
     }
     bool ok = table_print(&t, stdout);
     table_finish(&t);
+    for (size_t i = 0; i < q->group_count; i++)
+        if (!q->groups[i].rank.exact)
+            printf("Wilcoxon's p of %s first is by the normal approximation.\n",
+                   label(sample, q->groups[i].first_condition));
     return ok;
 }
 
@@ -69,15 +73,15 @@ static bool print_question(const struct sample *sample, const struct rating_ques
         table_cell(&t, "%s", label(sample, g->first_condition));
         table_cell(&t, "%s", label(sample, g->second_condition));
         table_cell(&t, "%zu", g->n);
-        table_cell(&t, "%.2f", g->first_of.mean);
-        table_cell(&t, "%.2f", g->first_of.sd);
-        table_cell(&t, "%.2f", g->second_of.mean);
-        table_cell(&t, "%.2f", g->second_of.sd);
-        table_cell(&t, "%.2f", g->change.estimate);
-        table_cell(&t, "%.2f to %.2f", g->change.ci_low, g->change.ci_high);
-        table_cell(&t, "%.3f", g->change.t);
-        table_cell(&t, "%.0f", g->change.df);
-        table_cell(&t, "%.4f", g->change.p_value);
+        ratings_number(&t, "%.2f", g->first_of.mean);
+        ratings_number(&t, "%.2f", g->first_of.sd);
+        ratings_number(&t, "%.2f", g->second_of.mean);
+        ratings_number(&t, "%.2f", g->second_of.sd);
+        ratings_number(&t, "%.2f", g->change.estimate);
+        ratings_interval(&t, g->change.ci_low, g->change.ci_high);
+        ratings_number(&t, "%.3f", g->change.t);
+        ratings_number(&t, "%.0f", g->change.df);
+        ratings_p(&t, g->change.p_value);
     }
     printf("%s (%g to %g)\n", q->question, q->scale_min, q->scale_max);
     bool ok = table_print(&t, stdout);
@@ -132,6 +136,7 @@ static void group_json(struct json *json, const struct sample *sample, const str
     ratings_ttest_json(json, "second_minus_first", &g->change);
     ratings_rank_json(json, "wilcoxon", &g->rank);
     ratings_effect_json(json, "d_z", &g->effect);
+    ratings_effect_json(json, "d_av", &g->average);
     json_close(json, '}');
 }
 

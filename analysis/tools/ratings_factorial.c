@@ -17,16 +17,16 @@ static bool print_effects(const struct factorial *f)
         char name[256];
         factorial_effect_name(f, e->factors, " x ", name);
         table_cell(&t, "%s", name);
-        table_cell(&t, "%.0f", e->df);
-        table_cell(&t, "%.0f", e->df_error);
-        table_cell(&t, "%.3f", e->f);
-        table_cell(&t, "%.4f", e->p_value);
-        table_cell(&t, "%.3f", e->epsilon_gg);
-        table_cell(&t, "%.4f", e->p_gg);
-        table_cell(&t, "%.3f", e->epsilon_hf);
-        table_cell(&t, "%.4f", e->p_hf);
-        table_cell(&t, "%.3f", e->eta2_partial);
-        table_cell(&t, "%.3f", e->eta2_generalised);
+        ratings_number(&t, "%.0f", e->df);
+        ratings_number(&t, "%.0f", e->df_error);
+        ratings_number(&t, "%.3f", e->f);
+        ratings_p(&t, e->p_value);
+        ratings_number(&t, "%.3f", e->epsilon_gg);
+        ratings_p(&t, e->p_gg);
+        ratings_number(&t, "%.3f", e->epsilon_hf);
+        ratings_p(&t, e->p_hf);
+        ratings_number(&t, "%.3f", e->eta2_partial);
+        ratings_number(&t, "%.3f", e->eta2_generalised);
     }
     bool ok = table_print(&t, stdout);
     table_finish(&t);
@@ -47,9 +47,9 @@ static bool print_means(const struct factorial *f, double conf)
             const struct factorial_factor *factor = &f->factors[j];
             table_cell(&t, "%s", factor->name);
             table_cell(&t, "%s", factor->levels[k]);
-            table_cell(&t, "%.2f", factor->mean[k]);
-            table_cell(&t, "%.2f to %.2f", factor->mean[k] - factor->half_width[k],
-                       factor->mean[k] + factor->half_width[k]);
+            ratings_number(&t, "%.2f", factor->mean[k]);
+            ratings_interval(&t, factor->mean[k] - factor->half_width[k],
+                             factor->mean[k] + factor->half_width[k]);
         }
     bool ok = table_print(&t, stdout);
     table_finish(&t);
@@ -70,14 +70,14 @@ static bool print_pairs(const struct factorial_factor *factor, double conf)
     for (size_t i = 0; i < factor->pair_count; i++) {
         const struct factorial_pair *p = &factor->pairs[i];
         table_cell(&t, "%s - %s", factor->levels[p->a], factor->levels[p->b]);
-        table_cell(&t, "%.2f", p->test.estimate);
-        table_cell(&t, "%.2f to %.2f", p->test.ci_low, p->test.ci_high);
-        table_cell(&t, "%.3f", p->test.t);
-        table_cell(&t, "%.0f", p->test.df);
-        table_cell(&t, "%.4f", p->test.p_value);
-        table_cell(&t, "%.4f", p->p_holm);
-        table_cell(&t, "%.2f", p->effect.d);
-        table_cell(&t, "%.2f to %.2f", p->effect.ci_low, p->effect.ci_high);
+        ratings_number(&t, "%.2f", p->test.estimate);
+        ratings_interval(&t, p->test.ci_low, p->test.ci_high);
+        ratings_number(&t, "%.3f", p->test.t);
+        ratings_number(&t, "%.0f", p->test.df);
+        ratings_p(&t, p->test.p_value);
+        ratings_p(&t, p->p_holm);
+        ratings_number(&t, "%.2f", p->effect.d);
+        ratings_interval(&t, p->effect.ci_low, p->effect.ci_high);
     }
     printf("\nLevels of %s, paired t-tests\n", factor->name);
     bool ok = table_print(&t, stdout);

@@ -3,7 +3,32 @@
 #include "analysis/tools/ratings_parts.h"
 #include "analysis/tools/table.h"
 
+#include <math.h>
 #include <stdio.h>
+
+void ratings_number(struct table *t, const char *format, double value)
+{
+    if (isnan(value))
+        table_cell(t, "-");
+    else
+        table_cell(t, format, value);
+}
+
+void ratings_interval(struct table *t, double low, double high)
+{
+    if (isnan(low) || isnan(high))
+        table_cell(t, "-");
+    else
+        table_cell(t, "%.2f to %.2f", low, high);
+}
+
+void ratings_p(struct table *t, double p)
+{
+    if (p < 0.0001)
+        table_cell(t, "< 0.0001");
+    else
+        ratings_number(t, "%.4f", p);
+}
 
 bool ratings_print_options(const struct sample *sample, const struct rating_options *q, double conf)
 {
@@ -23,16 +48,16 @@ bool ratings_print_options(const struct sample *sample, const struct rating_opti
         table_cell(&t, "%s", sample->conditions[c->test].label);
         table_cell(&t, "%s", sample->conditions[c->reference].label);
         table_cell(&t, "%zu", c->n);
-        table_cell(&t, "%.2f", c->test_of.mean);
-        table_cell(&t, "%.2f", c->reference_of.mean);
-        table_cell(&t, "%.2f", c->difference.estimate);
-        table_cell(&t, "%.2f to %.2f", c->difference.ci_low, c->difference.ci_high);
-        table_cell(&t, "%.3f", c->difference.t);
-        table_cell(&t, "%.4f", c->difference.p_value);
-        table_cell(&t, "%.4f", c->p_holm);
-        table_cell(&t, "%.4f", c->rank.p_value);
-        table_cell(&t, "%.2f", c->effect.d);
-        table_cell(&t, "%.2f to %.2f", c->effect.ci_low, c->effect.ci_high);
+        ratings_number(&t, "%.2f", c->test_of.mean);
+        ratings_number(&t, "%.2f", c->reference_of.mean);
+        ratings_number(&t, "%.2f", c->difference.estimate);
+        ratings_interval(&t, c->difference.ci_low, c->difference.ci_high);
+        ratings_number(&t, "%.3f", c->difference.t);
+        ratings_p(&t, c->difference.p_value);
+        ratings_p(&t, c->p_holm);
+        ratings_p(&t, c->rank.p_value);
+        ratings_number(&t, "%.2f", c->effect.d);
+        ratings_interval(&t, c->effect.ci_low, c->effect.ci_high);
     }
     printf("%s (%g to %g): both options of a trial, test minus reference, paired\n", q->question, q->scale_min,
            q->scale_max);
@@ -99,6 +124,7 @@ static void cell_json(struct json *json, const struct sample *sample, const stru
     json_number(json, "p_holm", c->p_holm);
     ratings_rank_json(json, "wilcoxon", &c->rank);
     ratings_effect_json(json, "d_z", &c->effect);
+    ratings_effect_json(json, "d_av", &c->average);
     json_close(json, '}');
 }
 

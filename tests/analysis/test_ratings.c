@@ -197,6 +197,7 @@ static void before_and_after_by_ranks(void **state)
         snprintf(name, sizeof name, "%s.d", names[i]);
         expect_number(json, marks[i], "\"d_z\"", "d", name);
     }
+    expect_number(json, marks[1], "\"d_av\"", "d", "test_first.d_av");
     free(json);
     study_file_sql("s.db",
                    "UPDATE rating SET value = 10 WHERE trial_id = 24; UPDATE rating SET value = 5 WHERE "

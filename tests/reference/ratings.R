@@ -84,6 +84,8 @@ add("II.p_holm", p.adjust(ps, "holm")[2])
 # The ratings before and after of tests/analysis/study_file.c (small_study.R), by ranks
 change <- c(1, 1, 1, 1, 1, 1, 1, -1, -1, 0, 0)
 add("test_first.rank_p", enumerate(change))
+first <- c(6, 7, 5, 8, 6, 4, 6, 7, 9, 6, 6)
+add("test_first.d_av", mean(change) / ((sd(first) + sd(first + change)) / 2))
 add("test_first.d", mean(change) / sd(change))
 change <- c(-2, -2, -1, -1, -1, -1, 0, 0, 0)
 add("regular_first.rank_p", enumerate(change))
