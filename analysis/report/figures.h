@@ -27,6 +27,16 @@ bool figure_choices(const struct choices *choices, const struct figure_desc *des
 bool figure_ratings(const struct sample *sample, const struct rating_question *question,
                     const struct figure_desc *desc, char **out_svg, char *error, size_t error_size);
 
+// Means of every factor's levels with their intervals within people, on the whole scale.
+bool figure_factorial(const struct factorial *factorial, const struct figure_desc *desc, char **out_svg,
+                      char *error, size_t error_size);
+
+// Diverging bars of what was answered at every factor's levels (Weier 2016, Figures 6 and 7). Only for scales
+// of 2 to 11 points, and answers on them.
+bool figure_likert(const struct factorial *factorial, const struct figure_desc *desc, char **out_svg,
+                   char *error, size_t error_size);
+bool figure_likert_possible(const struct factorial *factorial);
+
 // Median, 95th and 99th percentile of the stimulus frames' GPU time (CPU time where no GPU time is known).
 bool figure_frames(const struct sample *sample, const struct frames *frames, const struct figure_desc *desc,
                    char **out_svg, char *error, size_t error_size);

@@ -36,3 +36,16 @@ void level_join(const struct choice_cell *cell, size_t from, size_t to, char out
         snprintf(out + used, 256 - used, "%s%s", i > from ? ", " : "", words);
     }
 }
+
+void level_all(const struct sample *sample, const char *factors, char out[256])
+{
+    out[0] = '\0';
+    for (size_t i = 0; i < sample->factor_count; i++) {
+        char words[96];
+        size_t used = strlen(out);
+        if (strcmp(sample->factors[i].factors, factors) != 0)
+            continue;
+        level_words(sample->factors[i].key, sample->factors[i].value, true, words);
+        snprintf(out + used, 256 - used, "%s%s", used ? ", " : "", words);
+    }
+}

@@ -10,4 +10,7 @@ void level_words(const char *factor, const char *value, bool named, char out[96]
 // Levels `from` up to `to` (not included), joined by commas.
 void level_join(const struct choice_cell *cell, size_t from, size_t to, char out[256]);
 
+// The same of all factors of a trial, given by their JSON text; "" where there is none.
+void level_all(const struct sample *sample, const char *factors, char out[256]);
+
 #endif

@@ -20,6 +20,7 @@ struct filling {
     struct sample *sample;
     size_t file;
     struct open_pair pair;
+    struct rating_options_open option;
 };
 
 static size_t find_question(struct filling *f, const struct store_rating_row *row)
@@ -72,34 +73,29 @@ static bool close_pair(struct filling *f)
     return true;
 }
 
-static bool add_rating(void *user, const struct store_rating_row *row)
+// Ratings that do not count, each under its reason.
+static bool left_out(struct filling *f, const struct store_rating_row *row, size_t condition)
 {
-    struct filling *f = user;
     struct ratings *r = f->ratings;
-    if (sample_find_session(f->sample, f->file, row->session_id) == SAMPLE_NONE)
-        return true;
-    size_t condition = sample_find_condition(f->sample, f->file, row->condition_id);
-    if (row->trial_id == 0 || condition == SAMPLE_NONE) {
-        r->no_condition++;
-        return true;
-    }
-    if (strcmp(row->trial_status, "done") != 0) {
-        r->not_done++;
-        return true;
-    }
-    if (strcmp(row->trial_kind, "practice") == 0 || strcmp(row->trial_kind, "catch") == 0 ||
-        strcmp(row->trial_kind, "null") == 0) {
-        r->other_kinds++;
-        return true;
-    }
-    if (sample_ratings_excluded(f->sample, f->file, row->trial_id)) {
-        r->excluded++;
-        return true;
-    }
-    if (!*row->order) { // of no rate block with a complement: nothing says what it would be paired with
-        r->more++;
-        return true;
-    }
+    int64_t *why = NULL;
+    if (row->trial_id == 0 || condition == SAMPLE_NONE)
+        why = &r->no_condition;
+    else if (strcmp(row->trial_status, "done") != 0)
+        why = &r->not_done;
+    else if (strcmp(row->trial_kind, "practice") == 0 || strcmp(row->trial_kind, "catch") == 0 ||
+             strcmp(row->trial_kind, "null") == 0)
+        why = &r->other_kinds;
+    else if (sample_ratings_excluded(f->sample, f->file, row->trial_id))
+        why = &r->excluded;
+    else if (!isfinite(row->value))
+        why = &r->not_finite;
+    if (why)
+        ++*why;
+    return why != NULL;
+}
+
+static bool add_before_after(struct filling *f, const struct store_rating_row *row, size_t condition)
+{
     size_t question = find_question(f, row);
     if (question == SAMPLE_NONE)
         return false;
@@ -111,11 +107,29 @@ static bool add_rating(void *user, const struct store_rating_row *row)
         pair->question = question;
     }
     if (pair->count == 2) {
-        r->more++;
+        f->ratings->more++;
         return true;
     }
     pair->conditions[pair->count] = condition;
     pair->values[pair->count++] = row->value;
+    return true;
+}
+
+static bool add_rating(void *user, const struct store_rating_row *row)
+{
+    struct filling *f = user;
+    size_t session = sample_find_session(f->sample, f->file, row->session_id);
+    size_t condition = sample_find_condition(f->sample, f->file, row->condition_id);
+    if (session == SAMPLE_NONE || left_out(f, row, condition))
+        return true;
+    size_t person = f->sample->sessions[session].person;
+    if (*row->order)
+        return add_before_after(f, row, condition);
+    if (strcmp(row->trial_kind, "rate") == 0)
+        return factorial_add(&f->ratings->factorials, f->sample, row, person);
+    if (row->subject != 's')
+        return rating_options_add(&f->ratings->options, f->sample, &f->option, row, person, condition);
+    f->ratings->more++; // of nothing that it could be compared with
     return true;
 }
 
@@ -127,7 +141,7 @@ static int by_first(const void *x, const void *y)
     return (a->second_condition > b->second_condition) - (a->second_condition < b->second_condition);
 }
 
-static void finish(struct rating_question *q, double conf)
+static void finish(struct rating_question *q, double conf, bool pratt)
 {
     const struct stat_ttest_options options = {.conf = conf};
     qsort(q->groups, q->group_count, sizeof q->groups[0], by_first);
@@ -136,14 +150,21 @@ static void finish(struct rating_question *q, double conf)
         g->first_of = stat_moments(g->first, g->n);
         g->second_of = stat_moments(g->second, g->n);
         g->change = stat_ttest_paired(g->second, g->first, g->n, &options);
+        g->rank = stat_wilcoxon_paired(g->second, g->first, g->n,
+                                       &(struct stat_wilcoxon_options){.conf = conf, .pratt = pratt});
+        g->effect = stat_effect_paired(g->second, g->first, g->n, conf);
+        g->average = stat_effect_average(g->second, g->first, g->n, conf);
     }
     q->compared = q->group_count == 2;
-    if (q->compared)
-        q->first_between =
-            stat_ttest_welch(q->groups[0].first, q->groups[0].n, q->groups[1].first, q->groups[1].n, &options);
+    if (!q->compared)
+        return;
+    const struct rating_group *a = &q->groups[0], *b = &q->groups[1];
+    q->first_between = stat_ttest_welch(a->first, a->n, b->first, b->n, &options);
+    q->between_effect = stat_effect_two_samples(a->first, a->n, b->first, b->n, conf);
 }
 
-bool ratings_load(struct ratings *out, struct sample *sample, double conf, char *error, size_t error_size)
+bool ratings_load(struct ratings *out, struct sample *sample, double conf, bool pratt, char *error,
+                  size_t error_size)
 {
     *out = (struct ratings){.conf = conf};
     bool ok = true;
@@ -151,16 +172,19 @@ bool ratings_load(struct ratings *out, struct sample *sample, double conf, char 
     for (size_t i = 0; ok && i < sample->file_count; i++) {
         struct filling f = {.ratings = out, .sample = sample, .file = i, .pair = {.question = SAMPLE_NONE}};
         ok = store_read_ratings(sample->files[i], add_rating, &f) && close_pair(&f);
+        rating_options_close(&out->options, &f.option);
         if (!ok && store_reader_error(sample->files[i])[0])
             snprintf(error, error_size, "%s", store_reader_error(sample->files[i]));
     }
+    ok = ok && factorial_finish(&out->factorials, sample, conf);
     if (!ok) {
         ratings_free(out);
         return false;
     }
     for (size_t i = 0; i < out->question_count; i++)
         if (out->questions[i].group_count)
-            finish(&out->questions[i], conf);
+            finish(&out->questions[i], conf, pratt);
+    rating_options_finish(&out->options, conf, pratt);
     error[0] = '\0';
     return true;
 }
@@ -175,5 +199,12 @@ void ratings_free(struct ratings *ratings)
         free(ratings->questions[i].groups);
     }
     free(ratings->questions);
+    rating_options_free(&ratings->options);
+    factorial_free(&ratings->factorials);
     *ratings = (struct ratings){0};
+}
+
+bool ratings_any(const struct ratings *ratings)
+{
+    return ratings->question_count || ratings->options.count || ratings->factorials.count;
 }

@@ -1,4 +1,7 @@
-// Two ratings per person, in two orders: the comparison of Franke 2021, section 8.2.
+// Ratings, by how they were asked: before and after in two orders (here), both options of a trial
+// (rating_options.h), over crossed factors (factorial.h).
+//
+// Before and after: two ratings per person, the comparison of Franke 2021, section 8.2.
 //
 // Of each question, the two ratings of different conditions that a rate block and its complement ask make a
 // pair. Sessions are grouped by which condition came first. First ratings are compared between the two groups
@@ -8,16 +11,22 @@
 #ifndef ANALYSIS_REPORT_RATINGS_H
 #define ANALYSIS_REPORT_RATINGS_H
 
+#include "analysis/report/factorial.h"
+#include "analysis/report/rating_options.h"
 #include "analysis/report/sample.h"
+#include "analysis/stats/effect.h"
 #include "analysis/stats/moments.h"
 #include "analysis/stats/ttest.h"
+#include "analysis/stats/wilcoxon.h"
 
 struct rating_group {
     size_t first_condition, second_condition;
     size_t n; // pairs
     double *first, *second;
     struct stat_moments first_of, second_of;
-    struct stat_ttest change; // second minus first, paired; NaN where all changes are equal or n < 2
+    struct stat_ttest change;           // second minus first, paired; NaN where all changes are equal or n < 2
+    struct stat_wilcoxon rank;          // of the same changes
+    struct stat_effect effect, average; // d_z and d_av of the same
 };
 
 struct rating_question {
@@ -27,18 +36,25 @@ struct rating_question {
     struct rating_group *groups;
     bool compared; // exactly two groups: `first_between` is group 0 minus group 1
     struct stat_ttest first_between;
-    int64_t unpaired; // sessions with a rating and no pair
+    struct stat_effect between_effect; // in the pooled SD
+    int64_t unpaired;                  // sessions with a rating and no pair
 };
 
 struct ratings {
     double conf;
     size_t question_count;
     struct rating_question *questions;
-    int64_t used;                                                // ratings in pairs
-    int64_t not_done, other_kinds, excluded, no_condition, more; // ratings left out
+    int64_t used; // ratings in pairs
+    struct rating_options_list options;
+    struct factorial_list factorials;
+    // Ratings left out; `not_finite` are NaN or infinite, which no program of ours writes.
+    int64_t not_done, other_kinds, excluded, no_condition, more, not_finite;
 };
 
-bool ratings_load(struct ratings *out, struct sample *sample, double conf, char *error, size_t error_size);
+// `pratt`: signed-rank tests rank zeros before they drop them.
+bool ratings_load(struct ratings *out, struct sample *sample, double conf, bool pratt, char *error,
+                  size_t error_size);
 void ratings_free(struct ratings *ratings);
+bool ratings_any(const struct ratings *ratings); // whether there is anything to show
 
 #endif

@@ -108,6 +108,39 @@ static bool draw_ratings(struct report *r, char *error, size_t error_size)
     return true;
 }
 
+static bool draw_factorial(struct report *r, size_t i, bool narrow, char *error, size_t error_size)
+{
+    const struct factorial *f = &r->ratings.factorials.items[i];
+    struct figure_pair *means = &r->factorial_figures[i], *answers = &r->likert_figures[i];
+    char id[32], other[32];
+    snprintf(id, sizeof id, "factorial-%zu-%c", i, narrow ? 'n' : 'w');
+    snprintf(other, sizeof other, "likert-%zu-%c", i, narrow ? 'n' : 'w');
+    struct figure_text mean_text = {id, "Mean ratings per level of each factor",
+                                    "A dot and an interval per level; the tables below have every number.",
+                                    narrow ? "narrow" : "wide"},
+                       answer_text = {
+                           other, "Answers per level of each factor",
+                           "A bar per level, from the lowest answer on the left to the highest; shares "
+                           "below and above the middle stand at its ends.",
+                           narrow ? "narrow" : "wide"};
+    if (!figure_factorial(f, &(struct figure_desc){narrow, &mean_text}, narrow ? &means->narrow : &means->wide,
+                          error, error_size))
+        return false;
+    return !figure_likert_possible(f) ||
+           figure_likert(f, &(struct figure_desc){narrow, &answer_text},
+                         narrow ? &answers->narrow : &answers->wide, error, error_size);
+}
+
+static bool draw_factorials(struct report *r, char *error, size_t error_size)
+{
+    const struct factorial_list *list = &r->ratings.factorials;
+    for (size_t i = 0; i < list->count && i < REPORT_QUESTIONS; i++)
+        for (int narrow = 0; !list->items[i].refusal[0] && narrow < 2; narrow++)
+            if (!draw_factorial(r, i, narrow, error, error_size))
+                return false;
+    return true;
+}
+
 static bool draw_frames(struct report *r, char *error, size_t error_size)
 {
     for (int narrow = 0; figure_frames_rows(&r->frames) && narrow < 2; narrow++) {
@@ -148,7 +181,7 @@ static bool load_tests(struct report_tests *out, struct report *r, enum sample_r
 {
     sample_apply(r->sample, rules);
     bool ok = choices_load(&out->choices, r->sample, r->conf, error, error_size) &&
-              ratings_load(&out->ratings, r->sample, r->conf, error, error_size);
+              ratings_load(&out->ratings, r->sample, r->conf, false, error, error_size);
     sample_apply(r->sample, SAMPLE_RULES);
     return ok;
 }
@@ -156,7 +189,7 @@ static bool load_tests(struct report_tests *out, struct report *r, enum sample_r
 static bool load(struct report *r, char *error, size_t error_size)
 {
     return choices_load(&r->choices, r->sample, r->conf, error, error_size) &&
-           ratings_load(&r->ratings, r->sample, r->conf, error, error_size) &&
+           ratings_load(&r->ratings, r->sample, r->conf, false, error, error_size) &&
            checks_load(&r->checks, r->sample, r->conf, error, error_size) &&
            frames_load(&r->frames, r->sample, error, error_size) &&
            audit_load(&r->audit, r->sample, error, error_size) &&
@@ -180,6 +213,10 @@ static void free_figures(struct report *r)
     for (int i = 0; i < REPORT_QUESTIONS; i++) {
         free(r->ratings_figures[i].wide);
         free(r->ratings_figures[i].narrow);
+        free(r->factorial_figures[i].wide);
+        free(r->factorial_figures[i].narrow);
+        free(r->likert_figures[i].wide);
+        free(r->likert_figures[i].narrow);
     }
 }
 
@@ -194,8 +231,8 @@ bool report_write(struct sample *sample, double conf, const char *path, char *er
     else
         snprintf(error, error_size, "not enough memory");
     ok = ok && load(&r, error, error_size) && draw_choices(&r, error, error_size) &&
-         draw_ratings(&r, error, error_size) && draw_frames(&r, error, error_size) &&
-         write_to(&r, path, temporary, error, error_size);
+         draw_ratings(&r, error, error_size) && draw_factorials(&r, error, error_size) &&
+         draw_frames(&r, error, error_size) && write_to(&r, path, temporary, error, error_size);
     free_figures(&r);
     choices_free(&r.choices);
     ratings_free(&r.ratings);

@@ -159,6 +159,75 @@ static void rating_rows(const struct report *r, const struct rating_question *q)
     }
 }
 
+static const struct rating_option_cell *same_option_cell(const struct ratings *in, const char *question,
+                                                         const struct rating_option_cell *cell)
+{
+    for (size_t i = 0; i < in->options.count; i++)
+        for (size_t k = 0; k < in->options.items[i].cell_count; k++) {
+            const struct rating_option_cell *other = &in->options.items[i].cells[k];
+            if (strcmp(in->options.items[i].question, question) == 0 && other->test == cell->test &&
+                other->reference == cell->reference && strcmp(other->block, cell->block) == 0 &&
+                strcmp(other->factors, cell->factors) == 0)
+                return other;
+        }
+    return NULL;
+}
+
+static void option_rows(const struct report *r, const struct rating_options *q)
+{
+    const struct ratings *in[3] = {&r->all.ratings, &r->ratings, &r->stricter.ratings};
+    for (size_t k = 0; k < q->cell_count; k++) {
+        char words[256];
+        level_all(r->sample, q->cells[k].factors, words);
+        fputs("<tr>", r->out);
+        html_cell(r->out, "th scope=\"row\" class=\"word\"", "%s: %s less %s%s%s", q->question,
+                  report_label(r, q->cells[k].test), report_label(r, q->cells[k].reference),
+                  words[0] ? ", " : "", words);
+        for (int i = 0; i < 3; i++) {
+            const struct rating_option_cell *cell = same_option_cell(in[i], q->question, &q->cells[k]);
+            test_cells(r->out, cell ? &cell->difference : NULL, cell ? cell->n : 0);
+        }
+        fputs("</tr>\n", r->out);
+    }
+}
+
+// By name: under other rules another factor may have lost all but one level.
+static void effect_cells(FILE *out, const struct ratings *in, const struct factorial *f, const char *name)
+{
+    char other[256], p[24];
+    for (size_t i = 0; i < in->factorials.count; i++) {
+        const struct factorial *g = &in->factorials.items[i];
+        if (strcmp(g->question, f->question) != 0 || strcmp(g->block, f->block) != 0)
+            continue;
+        for (size_t k = 0; k < g->anova.effect_count; k++) {
+            const struct stat_anova_effect *e = &g->anova.effects[k];
+            factorial_effect_name(g, e->factors, " \u00d7 ", other);
+            if (strcmp(other, name) != 0 || isnan(e->f))
+                continue;
+            html_p_value(p, e->p_gg);
+            html_cell(out, "td", "F = %.2f (n %zu)", e->f, g->people);
+            html_cell(out, "td", "%s", p);
+            return;
+        }
+    }
+    html_cell(out, "td", "none");
+    html_cell(out, "td", "\u2013");
+}
+
+static void effect_rows(const struct report *r, const struct factorial *f)
+{
+    for (size_t k = 0; k < f->anova.effect_count; k++) {
+        char name[256];
+        factorial_effect_name(f, f->anova.effects[k].factors, " \u00d7 ", name);
+        fputs("<tr>", r->out);
+        html_cell(r->out, "th scope=\"row\" class=\"word\"", "%s, %s: %s", f->question, f->block, name);
+        effect_cells(r->out, &r->all.ratings, f, name);
+        effect_cells(r->out, &r->ratings, f, name);
+        effect_cells(r->out, &r->stricter.ratings, f, name);
+        fputs("</tr>\n", r->out);
+    }
+}
+
 // Every test once: cells and questions of all data hold those of the others.
 void report_what_if(const struct report *r)
 {
@@ -170,8 +239,8 @@ void report_what_if(const struct report *r)
           "with "
           "the stricter ones too.</p>\n<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"What "
           "if\">"
-          "<table class=\"wrap\">\n<caption>Answers for the test option, or difference of ratings, and "
-          "p</caption>\n"
+          "<table class=\"wrap\">\n<caption>Answers for the test option, difference of ratings or F, and "
+          "p (of F: p GG)</caption>\n"
           "<thead><tr><th scope=\"col\" class=\"word\">test</th><th scope=\"col\">all data</th><th "
           "scope=\"col\">p</th>"
           "<th scope=\"col\">these rules</th><th scope=\"col\">p</th><th scope=\"col\">stricter</th>"
@@ -193,5 +262,9 @@ void report_what_if(const struct report *r)
     }
     for (size_t i = 0; i < r->all.ratings.question_count; i++)
         rating_rows(r, &r->all.ratings.questions[i]);
+    for (size_t i = 0; i < r->all.ratings.options.count; i++)
+        option_rows(r, &r->all.ratings.options.items[i]);
+    for (size_t i = 0; i < r->all.ratings.factorials.count; i++)
+        effect_rows(r, &r->all.ratings.factorials.items[i]);
     fputs("</tbody></table></div>\n", out);
 }

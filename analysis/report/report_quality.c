@@ -140,12 +140,13 @@ static void left_out(const struct report *r)
                 incomplete, incomplete == 1 ? "session is" : "sessions are");
     if (sample_repeaters(r->sample))
         fprintf(r->out,
-                "<p class=\"note\">People with several sessions: %zu; ratings take each session as a person of "
+                "<p class=\"note\">People with several sessions: %zu; before and after, ratings take each "
+                "session as a person of "
                 "its own.</p>\n",
                 sample_repeaters(r->sample));
     int64_t all = sessions + c->excluded + c->not_done + c->other_kinds + c->no_test_slot + t->excluded +
-                  t->other_kinds + t->not_done + t->no_condition + t->more +
-                  (int64_t)(r->sample->left_out_simulated + r->sample->left_out_protocol);
+                  t->other_kinds + t->not_done + t->no_condition + t->more + t->options.unpaired +
+                  t->not_finite + (int64_t)(r->sample->left_out_simulated + r->sample->left_out_protocol);
     fputs(all ? "<p>Left out of the numbers above:</p>\n<ul>\n" : "<p>Nothing was left out.</p>\n", r->out);
     count_item(r, (int64_t)r->sample->left_out_simulated, "simulated sessions");
     count_item(r, (int64_t)r->sample->left_out_protocol, "sessions of other protocols");
@@ -158,7 +159,9 @@ static void left_out(const struct report *r)
     count_item(r, t->excluded, "ratings in excluded trials");
     count_item(r, t->not_done, "ratings in trials that are not done");
     count_item(r, t->no_condition, "ratings that belong to no option");
-    count_item(r, t->more, "ratings of no before-and-after pair");
+    count_item(r, t->more, "ratings of nothing they could be compared with");
+    count_item(r, t->options.unpaired, "ratings of one option of a trial only");
+    count_item(r, t->not_finite, "ratings that are not finite numbers, which no program of ours writes");
     fputs(all ? "</ul>\n" : "", r->out);
 }
 

@@ -48,6 +48,55 @@ static void question_table(const struct report *r, const struct rating_question 
     fputs("</tbody></table></div>\n", out);
 }
 
+void report_rank_interval(FILE *out, const struct stat_wilcoxon *w)
+{
+    if (isfinite(w->ci_low) && isfinite(w->ci_high))
+        html_cell(out, "td", "%.2f to %.2f", w->ci_low, w->ci_high);
+    else
+        html_cell(out, "td", "n too small");
+}
+
+static void ranks_table(const struct report *r, const struct rating_question *q)
+{
+    FILE *out = r->out;
+    fprintf(
+        out,
+        "<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"Changes by ranks and their "
+        "size\"><table class=\"wrap\">\n<caption>The same changes by Wilcoxon\u2019s signed ranks, and their "
+        "size</caption>\n<thead><tr><th scope=\"col\" class=\"word\">first</th><th "
+        "scope=\"col\">not&nbsp;0</th>"
+        "<th scope=\"col\">V</th><th scope=\"col\">p</th><th scope=\"col\">Hodges\u2013Lehmann</th>"
+        "<th scope=\"col\">%g&nbsp;%% interval</th><th scope=\"col\">d<sub>z</sub></th><th scope=\"col\">"
+        "%g&nbsp;%% interval</th><th scope=\"col\">Hedges\u2019 g</th></tr></thead>\n<tbody>\n",
+        100 * r->conf, 100 * r->conf);
+    for (size_t i = 0; i < q->group_count; i++) {
+        const struct rating_group *g = &q->groups[i];
+        char p[24];
+        html_p_value(p, g->rank.p_value);
+        fputs("<tr>", out);
+        html_cell(out, "th scope=\"row\" class=\"word\"", "%s", report_label(r, g->first_condition));
+        html_cell(out, "td", "%zu", g->rank.n);
+        html_cell(out, "td", "%g", g->rank.statistic);
+        html_cell(out, "td", "%s%s", p, g->rank.exact ? "" : " (normal)");
+        html_cell(out, "td", "%+.2f", g->rank.estimate);
+        report_rank_interval(out, &g->rank);
+        if (isnan(g->effect.d)) {
+            html_cell(out, "td colspan=\"3\" class=\"word\"", "no spread");
+        } else {
+            html_cell(out, "td", "%.2f", g->effect.d);
+            html_cell(out, "td", "%.2f to %.2f", g->effect.ci_low, g->effect.ci_high);
+            html_cell(out, "td", isnan(g->effect.g) ? "\u2013" : "%.2f", g->effect.g);
+        }
+        fputs("</tr>\n", out);
+    }
+    fputs("</tbody></table></div>\n<p>The signed-rank test drops changes of 0 and is exact with ties unless it "
+          "says "
+          "\u201cnormal\u201d; the Hodges\u2013Lehmann estimate and its interval keep them, so the interval "
+          "may reach "
+          "0 where p is small.</p>\n",
+          out);
+}
+
 static void first_sentence(const struct report *r, const struct rating_question *q)
 {
     const struct stat_ttest *w = &q->first_between;
@@ -65,10 +114,11 @@ static void first_sentence(const struct report *r, const struct rating_question 
     else
         html_printf(r->out,
                     "First ratings, %s minus %s: %+.2f, %g\u00a0%% interval %.2f to %.2f, Welch\u2019s t(%.2f) "
-                    "= %.3f, p %s%s.",
+                    "= %.3f, p %s%s; d = %.2f (%.2f to %.2f).",
                     report_label(r, q->groups[0].first_condition),
                     report_label(r, q->groups[1].first_condition), w->estimate, 100 * r->conf, w->ci_low,
-                    w->ci_high, w->df, w->t, p[0] == '<' ? "" : "= ", p);
+                    w->ci_high, w->df, w->t, p[0] == '<' ? "" : "= ", p, q->between_effect.d,
+                    q->between_effect.ci_low, q->between_effect.ci_high);
     if (q->unpaired)
         html_printf(r->out, " %" PRId64 " %s without two ratings of different options left out.", q->unpaired,
                     q->unpaired == 1 ? "session is" : "sessions are");
@@ -78,7 +128,7 @@ static void first_sentence(const struct report *r, const struct rating_question 
 void report_ratings(const struct report *r)
 {
     fputs("<h2>Ratings</h2>\n", r->out);
-    if (r->ratings.question_count == 0)
+    if (!ratings_any(&r->ratings))
         fputs("<p class=\"note\">No rating of an option was recorded that counts.</p>\n", r->out);
     for (size_t i = 0; i < r->ratings.question_count; i++) {
         const struct rating_question *q = &r->ratings.questions[i];
@@ -93,6 +143,14 @@ void report_ratings(const struct report *r)
                 "each order in which the two options were rated.");
         if (q->group_count)
             question_table(r, q);
+        if (q->group_count)
+            ranks_table(r, q);
         first_sentence(r, q);
     }
+    for (size_t i = 0; i < r->ratings.options.count; i++)
+        report_rating_options(r, &r->ratings.options.items[i]);
+    for (size_t i = 0; i < r->ratings.factorials.count; i++)
+        report_factorial(r, &r->ratings.factorials.items[i],
+                         i < REPORT_QUESTIONS ? &r->factorial_figures[i] : NULL,
+                         i < REPORT_QUESTIONS ? &r->likert_figures[i] : NULL);
 }

@@ -277,11 +277,32 @@ void report_methods(const struct report *r)
     if (r->choices.cell_count)
         methods_choices(r);
     if (r->ratings.question_count)
-        fputs("First ratings were compared between the two order groups by Welch\u2019s t-test, and the second "
-              "with the "
-              "first rating within each group by a paired t-test. ",
+        fputs(
+            "First ratings were compared between the two order groups by Welch\u2019s t-test, and the second "
+            "with the "
+            "first rating within each group by a paired t-test and by Wilcoxon\u2019s signed-rank test (exact "
+            "with ties, zeros dropped). ",
+            r->out);
+    if (r->ratings.options.count)
+        fputs(
+            "Ratings of both options of a trial were compared within people by paired t-tests with Holm\u2019s "
+            "adjustment over cells, and by Wilcoxon\u2019s signed-rank test. ",
+            r->out);
+    if (r->ratings.factorials.count)
+        fputs(
+            "Ratings over crossed factors were averaged per person and cell and analysed by a full factorial "
+            "analysis of variance within participants; sphericity is not tested but always corrected for, and "
+            "Greenhouse\u2013Geisser\u2019s p decides. Levels of factors with an effect were compared by "
+            "paired "
+            "t-tests with Holm\u2019s adjustment. People without a rating in every cell are left out. ",
+            r->out);
+    if (ratings_any(&r->ratings))
+        fputs("d is Cohen\u2019s (d<sub>z</sub>: in the SD of the differences), with exact intervals by the "
+              "noncentral t distribution. ",
               r->out);
-    html_printf(r->out, "Intervals cover %g\u00a0%%. p-values are not corrected for the number of tests. ",
+    html_printf(r->out,
+                "Intervals cover %g\u00a0%%. Other p-values than Holm\u2019s are not corrected for the number "
+                "of tests. ",
                 100 * r->conf);
     if (r->sample->simulated)
         fputs("<strong>All sessions are simulated:</strong> the answers come from a model that reads image "

@@ -33,7 +33,8 @@ struct report {
     struct checks checks;
     struct audit audit;
     struct report_tests all, stricter; // without any exclusion; with those of the set 'stricter' too
-    struct figure_pair choices_figure, frames_figure, ratings_figures[REPORT_QUESTIONS];
+    struct figure_pair choices_figure, frames_figure, ratings_figures[REPORT_QUESTIONS],
+        factorial_figures[REPORT_QUESTIONS], likert_figures[REPORT_QUESTIONS];
 };
 
 void report_summary(const struct report *r);
@@ -43,6 +44,12 @@ void report_planned(const struct report *r); // what the protocol planned, and w
 void report_choices(const struct report *r);
 void report_toggles(const struct report *r);
 void report_ratings(const struct report *r);
+// A cell; one that reaches to infinity says that n is too small for its confidence.
+void report_rank_interval(FILE *out, const struct stat_wilcoxon *rank);
+// Parts of the ratings; figures may be NULL.
+void report_rating_options(const struct report *r, const struct rating_options *q);
+void report_factorial(const struct report *r, const struct factorial *f, const struct figure_pair *means,
+                      const struct figure_pair *answers);
 void report_frames(const struct report *r);
 void report_checks(const struct report *r);  // null and catch trials
 void report_what_if(const struct report *r); // the same tests under other exclusions

@@ -7,6 +7,11 @@
 
 struct stat_moments stat_moments(const double *values, size_t n)
 {
+    return stat_moments_about(values, n, 0);
+}
+
+struct stat_moments stat_moments_about(const double *values, size_t n, double origin)
+{
     struct stat_moments m = {n, (double)NAN, (double)NAN, (double)NAN};
     if (n == 0)
         return m;
@@ -16,7 +21,7 @@ struct stat_moments stat_moments(const double *values, size_t n)
     double shift = sum / count;
     if (!isfinite(shift)) // also where a value is not finite
         return m;
-    m.mean = values[0] + shift;
+    m.mean = (values[0] - origin) + shift;
     if (n < 2)
         return m;
     for (size_t i = 0; i < n; i++) {

@@ -15,4 +15,8 @@ struct stat_moments {
 
 struct stat_moments stat_moments(const double *values, size_t n);
 
+// The same of the values less `origin`: near 0 where the values lie about it, so no digit of a small difference
+// between large numbers is lost.
+struct stat_moments stat_moments_about(const double *values, size_t n, double origin);
+
 #endif

@@ -1,6 +1,7 @@
 // t-tests. Student (1908), Biometrika 6, 1-25; unequal variances: Welch, B. L. (1947), Biometrika 34, 28-35,
 // with the degrees of freedom of Satterthwaite, F. E. (1946), Biometrics Bulletin 2, 110-114. Data count as
-// constant where the standard error is under ten rounding errors of the mean, as t.test of R has it.
+// constant where the standard error is under ten rounding errors of the mean, as t.test of R has it. What is
+// tested is a difference, and is taken before any mean is rounded, so that 1e9 in all values changes nothing.
 #include "analysis/stats/ttest.h"
 
 #include "analysis/stats/moments.h"
@@ -11,10 +12,11 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-static const struct stat_ttest none = {(double)NAN, (double)NAN, (double)NAN,
+static const struct stat_ttest none = {(double)NAN, (double)NAN, (double)NAN, (double)NAN,
                                        (double)NAN, (double)NAN, (double)NAN};
 
-static struct stat_ttest finish(double estimate, double std_error, double df, double scale,
+// `distance` is the estimate less its mean under the null hypothesis.
+static struct stat_ttest finish(double estimate, double distance, double std_error, double df, double scale,
                                 const struct stat_ttest_options *options)
 {
     const struct stat_ttest_options defaults = {0};
@@ -24,7 +26,8 @@ static struct stat_ttest finish(double estimate, double std_error, double df, do
     test.estimate = estimate;
     if (!(conf > 0 && conf < 1) || !isfinite(o->mean) || !(std_error > 10 * DBL_EPSILON * scale) || !(df > 0))
         return test;
-    test.t = (estimate - o->mean) / std_error;
+    test.std_error = std_error;
+    test.t = distance / std_error;
     test.df = df;
     if (o->alternative == STAT_TWO_SIDED) {
         double reach = qt((1 - conf) / 2, df, false, false) * std_error;
@@ -43,7 +46,8 @@ static struct stat_ttest finish(double estimate, double std_error, double df, do
 struct stat_ttest stat_ttest_one_sample(const double *x, size_t n, const struct stat_ttest_options *options)
 {
     struct stat_moments m = stat_moments(x, n);
-    return finish(m.mean, m.std_error, (double)n - 1, fabs(m.mean), options);
+    double distance = options ? stat_moments_about(x, n, options->mean).mean : m.mean;
+    return finish(m.mean, distance, m.std_error, (double)n - 1, fabs(m.mean), options);
 }
 
 struct stat_ttest stat_ttest_paired(const double *x, const double *y, size_t n,
@@ -62,8 +66,10 @@ struct stat_ttest stat_ttest_paired(const double *x, const double *y, size_t n,
 struct stat_ttest stat_ttest_welch(const double *x, size_t n_x, const double *y, size_t n_y,
                                    const struct stat_ttest_options *options)
 {
-    struct stat_moments a = stat_moments(x, n_x), b = stat_moments(y, n_y);
+    double origin = n_x && n_y ? x[0] : 0;
+    struct stat_moments a = stat_moments_about(x, n_x, origin), b = stat_moments_about(y, n_y, origin);
     double va = a.std_error * a.std_error, vb = b.std_error * b.std_error;
     double df = (va + vb) * (va + vb) / (va * va / ((double)n_x - 1) + vb * vb / ((double)n_y - 1));
-    return finish(a.mean - b.mean, sqrt(va + vb), df, fmax(fabs(a.mean), fabs(b.mean)), options);
+    double estimate = a.mean - b.mean, scale = fmax(fabs(a.mean + origin), fabs(b.mean + origin));
+    return finish(estimate, options ? estimate - options->mean : estimate, sqrt(va + vb), df, scale, options);
 }

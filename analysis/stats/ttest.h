@@ -13,6 +13,7 @@ struct stat_ttest {
     double estimate; // the mean, or the difference of means
     double t, df, p_value;
     double ci_low, ci_high; // of the estimate; one-sided forms reach to -/+ infinity
+    double std_error;       // of the estimate
 };
 
 struct stat_ttest_options {

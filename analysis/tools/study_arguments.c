@@ -78,7 +78,8 @@ void study_notes(const struct sample *sample)
         printf("Left out, sessions of another protocol than '%s' (--protocol NAME analyses them): %zu.\n",
                sample->protocol, sample->left_out_protocol);
     if (sample_repeaters(sample))
-        printf("People with several sessions: %zu; ratings take each session as a person of its own.\n",
+        printf("People with several sessions: %zu; before and after, ratings take each session as a person of "
+               "its own.\n",
                sample_repeaters(sample));
     for (size_t i = 0; i < sample->session_count; i++) {
         const struct sample_session *s = &sample->sessions[i];

@@ -77,6 +77,8 @@ struct store_rating_row {
     const char *trial_kind;           // the same
     const char *question, *block, *scene;
     const char *order;    // "first" or "second" of a rate block and its complement; "" of others
+    const char *factors;  // of the trial, the whole JSON text; "" of the session
+    char subject;         // 't' the option under test, 'r' the other one, 's' neither, or no test slot
     int64_t condition_id; // 0: none
     double value, scale_min, scale_max;
 };

@@ -200,6 +200,8 @@ static bool rating_row(sqlite3_stmt *s, const struct call *call)
         .scale_max = real(s, 11),
         .trial_kind = text(s, 12),
         .order = text(s, 13),
+        .factors = text(s, 14),
+        .subject = text(s, 15)[0],
     };
     return call->rating(call->user, &row);
 }
@@ -210,7 +212,10 @@ bool store_read_ratings(struct store_reader *reader, store_rating_fn each, void 
         "SELECT r.id, coalesce(r.session_id, t.session_id) AS session, r.trial_id, t.ordinal, t.status, "
         "r.question,"
         " t.block, t.scene, r.condition_id, r.value, r.scale_min, r.scale_max, t.kind,"
-        " t.factors ->> '$.order' FROM rating r LEFT JOIN trial t ON t.id = r.trial_id ORDER BY session, "
+        " t.factors ->> '$.order', t.factors, CASE WHEN r.subject = 'scene' OR t.test_slot IS NULL THEN 's' "
+        "WHEN "
+        "r.subject = t.test_slot THEN 't' ELSE 'r' END FROM rating r LEFT JOIN trial t ON t.id = r.trial_id "
+        "ORDER BY session, "
         "r.question, t.ordinal, r.id";
     return read_rows(reader, sql, rating_row, &(struct call){.user = user, .rating = each});
 }

@@ -42,7 +42,7 @@ double reference_number(const char *text)
 size_t reference_numbers(const char *text, double *out, size_t most)
 {
     size_t count = 0;
-    char copy[8192];
+    char copy[32768];
     assert_true(strlen(text) < sizeof copy);
     strcpy(copy, text);
     char *rest = copy[0] ? copy : NULL, *field;

@@ -1,0 +1,80 @@
+#include "analysis/report/figures.h"
+
+#include <math.h>
+#include <string.h>
+
+// A heading for each factor and a row for each of its levels.
+static size_t row_count(const struct factorial *f)
+{
+    size_t rows = 0;
+    for (size_t j = 0; j < f->factor_count; j++)
+        rows += 1 + f->factors[j].level_count;
+    return rows;
+}
+
+static void write_rows(FILE *data, const struct factorial *f)
+{
+    size_t row = 0;
+    for (size_t j = 0; j < f->factor_count; j++) {
+        const struct factorial_factor *factor = &f->factors[j];
+        row++;
+        for (size_t k = 0; k < factor->level_count; k++) {
+            double half = isfinite(factor->half_width[k]) ? factor->half_width[k] : 0;
+            char level[40];
+            snprintf(level, sizeof level, "%.39s", factor->levels[k]);
+            fprintf(data, "%zu %.6f %.6f %.6f ", row++, factor->mean[k], factor->mean[k] - half,
+                    factor->mean[k] + half);
+            figure_word(data, level);
+            fprintf(data, " \"%.2f\"\n", factor->mean[k]);
+        }
+    }
+    fputs("\n\n", data);
+    row = 0;
+    for (size_t j = 0; j < f->factor_count; j++) {
+        char name[40];
+        snprintf(name, sizeof name, "%.39s", f->factors[j].name);
+        fprintf(data, "%zu ", row);
+        figure_word(data, name);
+        fputc('\n', data);
+        row += 1 + f->factors[j].level_count;
+    }
+}
+
+// The longest level in characters, for the room to the left.
+static size_t widest(const struct factorial *f)
+{
+    size_t most = 4;
+    for (size_t j = 0; j < f->factor_count; j++)
+        for (size_t k = 0; k < f->factors[j].level_count; k++) {
+            size_t length = strlen(f->factors[j].levels[k]);
+            most = length > most ? length : most;
+        }
+    return most < 24 ? most : 24;
+}
+
+bool figure_factorial(const struct factorial *f, const struct figure_desc *desc, char **out_svg, char *error,
+                      size_t error_size)
+{
+    struct figure figure;
+    size_t rows = row_count(f);
+    int font = desc->narrow ? 12 : 14;
+    if (!figure_begin(&figure, desc->narrow ? FIGURE_NARROW_PX : FIGURE_WIDE_PX, 40 + 24 * (int)rows, font,
+                      error, error_size))
+        return false;
+    write_rows(figure.data, f);
+    double span = f->scale_max - f->scale_min, left = f->scale_min - 0.03 * span;
+    fprintf(figure.script,
+            "set yrange [%.1f:-0.7]\nset xrange [%.6g:%.6g]\nunset ytics\nset xtics %.6g,%.6g,%.6g\n"
+            "set lmargin %zu\nset rmargin 7\nset tmargin 0.3\nset bmargin 1.8\n"
+            "set grid xtics lw 0.6 lt 1 lc rgb '#dfe2e8'\n",
+            (double)rows - 0.4, left, f->scale_max + 0.03 * span, f->scale_min, span > 12 ? span / 5 : 1,
+            f->scale_max, widest(f) + 2);
+    fprintf(figure.script,
+            "plot 'data' index 0 using 3:1:($4-$3):(0) with vectors nohead lw 3 lc rgb '" FIGURE_BLUE "'"
+            ", '' index 0 using 2:1 with points pt 7 ps %s lc rgb '" FIGURE_BLUE "'"
+            ", '' index 0 using (%.6g):1:5 with labels right offset -0.6,0 tc rgb '" FIGURE_INK "'"
+            ", '' index 0 using (%.6g):1:6 with labels left offset 0.6,0 tc rgb '" FIGURE_INK "'"
+            ", '' index 1 using (%.6g):1:2 with labels left offset 0.3,0 font ',%d' tc rgb '" FIGURE_INK "'\n",
+            desc->narrow ? "0.7" : "0.9", left, f->scale_max + 0.03 * span, left, font + 1);
+    return figure_end(&figure, desc->text, out_svg, error, error_size);
+}
