@@ -12,6 +12,10 @@ static const struct {
     {"mean toggles study", "Toggles before answering"},
     {"unpaired_t rating order", "Ratings"},
     {"paired_t rating order", "Ratings"},
+    {"paired_t rating cell", "Ratings"},
+    {"anova rating factor", "Ratings"},
+    {"paired_t rating factor", "Ratings"},
+    {"mean rating factor", "Ratings"},
 };
 
 static const char *answer_of(const char *plan)
