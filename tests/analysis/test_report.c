@@ -204,10 +204,35 @@ static void exclusions_and_pooling_are_said(void **state)
     (void)state;
     char *page = report(&(struct study_desc){.excluded = true, .pooled = true, .equal = true});
     expect_self_contained(page);
-    assert_non_null(strstr(page, "* Pooled:"));
+    assert_non_null(strstr(page, "<strong>Pooled:</strong>"));
     assert_non_null(strstr(page, "half of the gaze was lost"));
     assert_non_null(strstr(page, "stricter (not applied)"));
     assert_non_null(strstr(page, "excluded sessions: 1"));
+    free(page);
+}
+
+// One cell of nine answers each, one of one answer each: each is tested and drawn in its way.
+static void several_answers_are_people(void **state)
+{
+    (void)state;
+    char *page = report(&(struct study_desc){.several = true});
+    expect_self_contained(page);
+    static const char *const parts[] = {"exact two-sided binomial or sign-flip test",
+                                        "Choices in cells with one answer per person were",
+                                        "In cells with several answers of a person the people",
+                                        "t interval as a line instead of a region",
+                                        "smallest attainable p",
+                                        "<td>4.8e-07</td>",
+                                        "of a person in the middle",
+                                        "Of 2 cells, 1 shows a preference (p \u2264 0.05)",
+                                        "<td>5 to 14</td>"};
+    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++)
+        if (!strstr(page, parts[i]))
+            fail_msg("the report lacks \"%s\"", parts[i]);
+    assert_null(strstr(page, "<td>6 to 16</td>")); // no null region of the other
+    free(page);
+    page = report(&(struct study_desc){0});
+    assert_null(strstr(page, "Several answers per person"));
     free(page);
 }
 
@@ -293,6 +318,7 @@ int main(void)
         cmocka_unit_test(simulated_is_branded),
         cmocka_unit_test(hostile_texts_stay_texts),
         cmocka_unit_test(exclusions_and_pooling_are_said),
+        cmocka_unit_test(several_answers_are_people),
         cmocka_unit_test(what_is_missing_is_said),
         cmocka_unit_test(failures_write_nothing),
         cmocka_unit_test(a_figure_becomes_part_of_a_page),
