@@ -116,9 +116,17 @@ static void tests_notes(const struct report *r)
             fputs("<p class=\"note\">", r->out);
             html_printf(
                 r->out,
-                "%s: with these %zu people the sign-flip p is never below %.2g; it cannot reach %.2g, whatever "
-                "they answer.",
-                words, cell->flip.people, cell->flip.least_p, 1 - r->conf);
+                "%s: with %zu %s the sign-flip p is never below %.2g; it cannot reach %.2g, whatever is "
+                "answered.",
+                words, cell->flip.people, cell->flip.people == 1 ? "person" : "people", cell->flip.least_p,
+                1 - r->conf);
+            fputs("</p>\n", r->out);
+        }
+        if (cell->several && (cell->ci.low < 0 || cell->ci.high > 1)) {
+            fputs("<p class=\"note\">", r->out);
+            html_printf(r->out,
+                        "%s: the t interval reaches beyond 0 or 100\u00a0%%; so near the end, t fits badly.",
+                        words);
             fputs("</p>\n", r->out);
         }
     }

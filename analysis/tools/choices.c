@@ -58,16 +58,13 @@ static void cell_row(struct table *t, const struct choice_cell *cell)
     table_cell(t, "%zu", cell->people);
     table_cell(t, "%.1f", 100 * cell->estimate);
     table_cell(t, "%s", choice_method_word(cell->method));
-    table_cell(t, "%.4f", cell->p_value);
-    table_cell(t, "%.4f", cell->holm);
-    if (isnan(cell->ci.low))
-        table_cell(t, "none");
-    else
-        table_cell(t, "%.1f to %.1f", 100 * cell->ci.low, 100 * cell->ci.high);
+    choices_p_cell(t, cell->p_value);
+    choices_p_cell(t, cell->holm);
+    choices_range_cell(t, cell->ci);
     if (cell->method == CHOICE_BINOMIAL)
         table_cell(t, "%" PRId64 " to %" PRId64, region->low, region->high);
     else
-        table_cell(t, cell->several ? "-" : "none");
+        table_cell(t, "-");
     table_cell(t, "%.2f", cell->toggles.mean);
     table_cell(t, "%.2f", cell->toggles.sd);
     table_cell(t, "%.2f", cell->reaction_median_s);

@@ -1,7 +1,6 @@
 #include "analysis/tools/choices_people.h"
 
 #include "analysis/tools/binomial_json.h"
-#include "analysis/tools/table.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -16,12 +15,24 @@ static void number(struct table *t, int digits, double value)
         table_cell(t, "%.*f", digits, value);
 }
 
-static void range(struct table *t, struct stat_interval ci)
+void choices_p_cell(struct table *table, double p)
 {
-    if (isnan(ci.low))
-        table_cell(t, "-");
+    if (p < 0.0001)
+        table_cell(table, "<0.0001");
     else
-        table_cell(t, "%.1f to %.1f", 100 * ci.low, 100 * ci.high);
+        number(table, 4, p);
+}
+
+void choices_range_cell(struct table *table, struct stat_interval ci)
+{
+    if (isnan(ci.low) || isnan(ci.high))
+        table_cell(table, "-");
+    else if (isinf(ci.low))
+        table_cell(table, "below %.1f", 100 * ci.high);
+    else if (isinf(ci.high))
+        table_cell(table, "above %.1f", 100 * ci.low);
+    else
+        table_cell(table, "%.1f to %.1f", 100 * ci.low, 100 * ci.high);
 }
 
 static bool print_tests(const struct choices *c)
@@ -44,17 +55,17 @@ static bool print_tests(const struct choices *c)
         else
             table_cell(&t, "%" PRId64 " to %" PRId64, people.least_n, people.most_n);
         number(&t, 1, 100 * cell->estimate);
-        number(&t, 4, c->p0 == 0.5 ? cell->flip.p_value : (double)NAN);
+        choices_p_cell(&t, c->p0 == 0.5 ? cell->flip.p_value : (double)NAN);
         if (c->p0 == 0.5)
             table_cell(&t, "%.2g", cell->flip.least_p);
         else
             table_cell(&t, "-");
         number(&t, 3, cell->t.t);
-        number(&t, 4, cell->t.p_value);
+        choices_p_cell(&t, cell->t.p_value);
         number(&t, 2, cell->overdispersion);
         number(&t, 1, 100 * cell->binomial.estimate);
-        number(&t, 4, cell->binomial.p_value);
-        range(&t, cell->binomial.ci);
+        choices_p_cell(&t, cell->binomial.p_value);
+        choices_range_cell(&t, cell->binomial.ci);
     }
     puts("\nSeveral answers per person: people are tested, not answers");
     bool ok = table_print(&t, stdout);
@@ -67,10 +78,15 @@ static void print_warnings(const struct choices *c)
     for (size_t i = 0; i < c->cell_count; i++) {
         const struct choice_cell *cell = &c->cells[i];
         if (cell->method == CHOICE_SIGN_FLIP && cell->flip.least_p > 1 - c->conf)
-            printf("%s: with these %zu people the sign-flip p is never below %.2g; it cannot reach %.2g.\n",
-                   cell->label, cell->flip.people, cell->flip.least_p, 1 - c->conf);
+            printf("%s: with %zu %s the sign-flip p is never below %.2g; it cannot reach %.2g.\n", cell->label,
+                   cell->flip.people, cell->flip.people == 1 ? "person" : "people", cell->flip.least_p,
+                   1 - c->conf);
         if (cell->several && isnan(cell->t.t))
             printf("%s: no t interval, which needs two people with different shares.\n", cell->label);
+        if (cell->several &&
+            ((isfinite(cell->ci.low) && cell->ci.low < 0) || (isfinite(cell->ci.high) && cell->ci.high > 1)))
+            printf("%s: the t interval reaches beyond 0 or 100 %%; so near the end, t fits badly.\n",
+                   cell->label);
     }
     puts("%: mean of the people's shares, each person counting the same, with its t interval above. least p: "
          "had "
@@ -99,11 +115,11 @@ static bool print_models(const struct choices *c)
         number(&t, 3, m->sd);
         number(&t, 3, m->t);
         number(&t, 0, m->df);
-        number(&t, 4, m->p_value);
+        choices_p_cell(&t, m->p_value);
         number(&t, 1, 100 * m->conditional);
-        range(&t, m->conditional_ci);
+        choices_range_cell(&t, m->conditional_ci);
         number(&t, 1, 100 * m->population);
-        range(&t, m->population_ci);
+        choices_range_cell(&t, m->population_ci);
     }
     puts("\nLogistic mixed model, one random intercept per person");
     bool ok = table_print(&t, stdout);

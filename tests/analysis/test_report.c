@@ -51,12 +51,11 @@ static size_t count(const char *text, const char *part)
     return n;
 }
 
-static char *report(const struct study_desc *desc)
+// The page of s.db.
+static char *report_file(bool simulated)
 {
     unlink("r.html");
-    study_file_make("s.db", desc);
-    const char *argv[] = {fovstats, "report", "s.db", "-o", "r.html", desc->simulated ? "--simulated" : NULL,
-                          NULL};
+    const char *argv[] = {fovstats, "report", "s.db", "-o", "r.html", simulated ? "--simulated" : NULL, NULL};
     struct program_result r = program_run(argv, NULL);
     if (r.code != 0 || r.err[0])
         fail_msg("exit %d: %s", r.code, r.err);
@@ -64,6 +63,12 @@ static char *report(const struct study_desc *desc)
     char *page = slurp("r.html");
     assert_non_null(page);
     return page;
+}
+
+static char *report(const struct study_desc *desc)
+{
+    study_file_make("s.db", desc);
+    return report_file(desc->simulated);
 }
 
 // Every tag that is opened is closed, in order. Void elements of HTML are known; SVG closes its own with "/>".
@@ -236,6 +241,26 @@ static void several_answers_are_people(void **state)
     free(page);
 }
 
+// Everybody always chose the same: there is a test, and neither a t interval nor a model.
+static void separation_is_said(void **state)
+{
+    (void)state;
+    study_file_make("s.db", &(struct study_desc){.several = true});
+    study_file_sql("s.db", "DELETE FROM choice WHERE trial_id < 1000; UPDATE choice SET chosen = 'a'");
+    char *page = report_file(false);
+    expect_self_contained(page);
+    assert_non_null(strstr(page, "separation: all answers are the same"));
+    assert_non_null(strstr(page, "As people answered several times per cell, the people"));
+    assert_non_null(strstr(page, "Each person answered several times in a cell; the bar is"));
+    assert_null(strstr(page, "overdispersion is not estimable there"));
+    free(page);
+    study_file_sql("s.db",
+                   "DELETE FROM choice WHERE segment_id > 4; UPDATE choice SET chosen = 'b' WHERE id % 8 = 0");
+    page = report_file(false);
+    assert_non_null(strstr(page, "with 4 people the sign-flip p is never below 0.12; it cannot reach 0.05"));
+    free(page);
+}
+
 static void what_is_missing_is_said(void **state)
 {
     (void)state;
@@ -319,6 +344,7 @@ int main(void)
         cmocka_unit_test(hostile_texts_stay_texts),
         cmocka_unit_test(exclusions_and_pooling_are_said),
         cmocka_unit_test(several_answers_are_people),
+        cmocka_unit_test(separation_is_said),
         cmocka_unit_test(what_is_missing_is_said),
         cmocka_unit_test(failures_write_nothing),
         cmocka_unit_test(a_figure_becomes_part_of_a_page),

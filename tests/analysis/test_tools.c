@@ -354,8 +354,7 @@ static void several_answers_agree_with_r(void **state)
     program_free(&r);
     study_file_sql("v.db", "DELETE FROM choice WHERE trial_id IN (SELECT id FROM trial WHERE session_id > 5)");
     r = FOVSTATS("choices", "v.db");
-    assert_non_null(
-        strstr(r.out, "with these 5 people the sign-flip p is never below 0.062; it cannot reach 0.05"));
+    assert_non_null(strstr(r.out, "with 5 people the sign-flip p is never below 0.062; it cannot reach 0.05"));
     program_free(&r);
 }
 
