@@ -203,7 +203,7 @@ static bool finish(struct choices *c, const struct choices_desc *desc)
     free(values);
     if (c->cell_count > 1)
         qsort(c->cells, c->cell_count, sizeof c->cells[0], by_levels);
-    return true;
+    return choices_contrast(c);
 }
 
 bool choices_load(struct choices *out, struct sample *sample, double conf, char *error, size_t error_size)
@@ -242,5 +242,6 @@ void choices_free(struct choices *choices)
         free(choices->cells[i].reaction_s);
     }
     free(choices->cells);
+    free(choices->contrasts);
     *choices = (struct choices){0};
 }

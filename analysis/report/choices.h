@@ -10,7 +10,8 @@
 // independent: the exact sign-flip test against one half, the t-test of the people's shares against another
 // preference, and the t interval of the shares. The binomial test of all answers is then kept as the papers
 // have it, with how much the people's counts are overdispersed, and a logistic mixed model stands beside it. A
-// person's cells are never joined. Holm's p is adjusted for all cells with an answer.
+// person's cells are never joined; levels of a factor are compared person by person. Holm's p is adjusted for
+// all cells with an answer.
 #ifndef ANALYSIS_REPORT_CHOICES_H
 #define ANALYSIS_REPORT_CHOICES_H
 
@@ -63,6 +64,16 @@ struct choice_cell {
     size_t reactions;
 };
 
+// Two levels of a factor that each person saw, compared where at least one of the cells has several answers of
+// a person: shares at level a minus those at level b in cells that are otherwise the same.
+struct choice_contrast {
+    const char *block, *factor, *a, *b;
+    size_t cell_pairs;   // of them the mean
+    size_t people;       // with answers at both levels
+    struct stat_ttest t; // of the people's differences, two-sided against 0; NaN as in ttest.h
+    double holm;         // adjusted for the pairs of levels of this factor
+};
+
 // What is tested. Zero is the default.
 struct choices_desc {
     double conf;                       // of intervals and null regions, in (0, 1); 0 means 0.95
@@ -75,7 +86,9 @@ struct choices {
     enum stat_alternative alternative;
     size_t cell_count;
     struct choice_cell *cells; // by block, then levels: numbers falling, words rising
-    int64_t answers;           // in all cells, "equal" too
+    size_t contrast_count;
+    struct choice_contrast *contrasts;
+    int64_t answers; // in all cells, "equal" too
     int64_t chosen_first, chosen_a;
     struct stat_moments toggles; // over all answers
     double reaction_median_s;
@@ -94,6 +107,8 @@ void choices_free(struct choices *choices);
 
 // Fills what a cell's counts say; choices_load() does.
 void choice_cell_test(struct choice_cell *cell, const struct choices_desc *desc);
+bool choices_contrast(
+    struct choices *choices); // fills the contrasts of sorted cells; false where memory ran out
 const char *choice_method_word(enum choice_method method); // "binomial", "sign-flip", "t"; "" for none
 
 #endif

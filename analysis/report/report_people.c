@@ -39,6 +39,9 @@ void report_choices_methods(const struct report *r)
         methods_one_each(r);
     if (r->choices.several)
         methods_several(r);
+    if (r->choices.contrast_count)
+        fputs("Levels of a factor were compared by a t-test of each person\u2019s difference of shares. ",
+              r->out);
     html_printf(r->out, "Cells were never joined. Holm\u2019s p is adjusted for all %zu cells with an answer. ",
                 r->choices.tested);
 }
@@ -185,6 +188,48 @@ static void models_table(const struct report *r)
           out);
 }
 
+static void contrast_row(FILE *out, const struct choice_contrast *x)
+{
+    char p[24], holm[24];
+    html_p_value(p, x->t.p_value);
+    html_p_value(holm, x->holm);
+    fputs("<tr>", out);
+    html_cell(out, "th scope=\"row\" class=\"word\"", "%s: %s \u2212 %s", x->factor, x->a, x->b);
+    html_cell(out, "td", "%zu", x->people);
+    if (isnan(x->t.t)) {
+        for (int i = 0; i < 3; i++)
+            html_cell(out, "td", "\u2013");
+    } else {
+        html_cell(out, "td", "%+.1f\u00a0%%", 100 * x->t.estimate);
+        html_cell(out, "td", "%.1f to %.1f\u00a0%%", 100 * x->t.ci_low, 100 * x->t.ci_high);
+        html_cell(out, "td", "t(%.0f) = %.3f", x->t.df, x->t.t);
+    }
+    html_cell(out, "td", "%s", p);
+    html_cell(out, "td", "%s", holm);
+    fputs("</tr>\n", out);
+}
+
+static void contrasts_table(const struct report *r)
+{
+    FILE *out = r->out;
+    if (r->choices.contrast_count == 0)
+        return;
+    fprintf(out,
+            "<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"Levels compared within "
+            "people\"><table>\n"
+            "<caption>Levels compared within people: t-test of each person\u2019s difference of shares, in "
+            "cells that "
+            "are otherwise the same</caption>\n<thead><tr><th scope=\"col\" class=\"word\">levels</th><th "
+            "scope=\"col\">people</th><th scope=\"col\">difference</th><th scope=\"col\">%g&nbsp;%% "
+            "interval</th><th "
+            "scope=\"col\">test</th><th scope=\"col\">p</th><th scope=\"col\">p "
+            "(Holm)</th></tr></thead>\n<tbody>\n",
+            100 * r->conf);
+    for (size_t i = 0; i < r->choices.contrast_count; i++)
+        contrast_row(out, &r->choices.contrasts[i]);
+    fputs("</tbody></table></div>\n", out);
+}
+
 void report_people(const struct report *r)
 {
     if (!r->choices.several)
@@ -192,4 +237,5 @@ void report_people(const struct report *r)
     tests_table(r);
     tests_notes(r);
     models_table(r);
+    contrasts_table(r);
 }

@@ -150,6 +150,7 @@ static void print_json(const struct sample *sample, const struct choices *c)
     for (size_t i = 0; i < c->cell_count; i++)
         cell_json(&json, sample, &c->cells[i], c->conf);
     json_close(&json, ']');
+    choices_contrasts_json(&json, c);
     json_integer(&json, "answers", c->answers);
     json_number(&json, "toggles_mean", c->toggles.mean);
     json_number(&json, "toggles_sd", c->toggles.sd);

@@ -135,12 +135,39 @@ static bool print_models(const struct choices *c)
     return ok;
 }
 
+static bool print_contrasts(const struct choices *c)
+{
+    const char *const headings[] = {"<block", "<factor", "<a", "<b", "people", "a - b %",
+                                    "CI",     "t",       "df", "p",  "Holm p", NULL};
+    struct table t;
+    table_init(&t, headings);
+    for (size_t i = 0; i < c->contrast_count; i++) {
+        const struct choice_contrast *x = &c->contrasts[i];
+        table_cell(&t, "%s", x->block);
+        table_cell(&t, "%s", x->factor);
+        table_cell(&t, "%s", x->a);
+        table_cell(&t, "%s", x->b);
+        table_cell(&t, "%zu", x->people);
+        number(&t, 1, 100 * x->t.estimate);
+        choices_range_cell(&t, (struct stat_interval){x->t.ci_low, x->t.ci_high});
+        number(&t, 3, x->t.t);
+        number(&t, 0, x->t.df);
+        choices_p_cell(&t, x->t.p_value);
+        choices_p_cell(&t, x->holm);
+    }
+    puts("\nLevels compared within people: two-sided t-test of each person's difference of shares");
+    bool ok = table_print(&t, stdout);
+    table_finish(&t);
+    puts("In cells that are otherwise the same. Holm p: adjusted for the pairs of one factor's levels.");
+    return ok;
+}
+
 bool choices_people_print(const struct choices *choices)
 {
     if (!print_tests(choices))
         return false;
     print_warnings(choices);
-    return print_models(choices);
+    return print_models(choices) && (choices->contrast_count == 0 || print_contrasts(choices));
 }
 
 static void flip_json(struct json *json, const struct stat_signflip *flip, double conf)
@@ -203,4 +230,23 @@ void choices_people_json(struct json *json, const struct choice_cell *cell, doub
     json_open(json, "pooled", '{');
     binomial_json(json, &cell->binomial);
     json_close(json, '}');
+}
+
+void choices_contrasts_json(struct json *json, const struct choices *choices)
+{
+    json_open(json, "contrasts", '[');
+    for (size_t i = 0; i < choices->contrast_count; i++) {
+        const struct choice_contrast *x = &choices->contrasts[i];
+        json_open(json, NULL, '{');
+        json_text(json, "block", x->block);
+        json_text(json, "factor", x->factor);
+        json_text(json, "a", x->a);
+        json_text(json, "b", x->b);
+        json_integer(json, "cell_pairs", (int64_t)x->cell_pairs);
+        json_integer(json, "people", (int64_t)x->people);
+        t_json(json, &x->t);
+        json_number(json, "p_holm", x->holm);
+        json_close(json, '}');
+    }
+    json_close(json, ']');
 }

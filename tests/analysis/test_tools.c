@@ -341,6 +341,13 @@ static void several_answers_agree_with_r(void **state)
     assert_true(json_after(r.out, "\"sign_flip\"", "least_p") == ldexp(1, 1 - 22));
     assert_non_null(strstr(r.out, "\"method\":\"sign-flip\""));
     assert_non_null(strstr(r.out, "\"method\":\"binomial\"")); // the other cell
+    const char *keys[] = {"estimate", "t", "df", "p_value", "ci_low", "ci_high"};
+    for (int i = 0; i < 6; i++) {
+        char name[64];
+        snprintf(name, sizeof name, "contrast.%s", keys[i]);
+        expect_number(strstr(r.out, "\"contrasts\""), "\"estimate\":", keys[i], name);
+    }
+    assert_true(json_after(r.out, "\"contrasts\"", "people") == 19);
     double pooled = json_after(r.out, "\"pooled\"", "p_value");
     assert_true(fabs(pooled - 0.3556) < 5e-5); // binom.test(92, 198)
     program_free(&r);
