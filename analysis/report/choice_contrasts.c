@@ -106,6 +106,26 @@ static bool fill(struct choice_contrast *contrast, const struct choices *c)
     return ok;
 }
 
+static bool same_family(const struct choice_contrast *x, const struct choice_contrast *y)
+{
+    return strcmp(x->block, y->block) == 0 && strcmp(x->factor, y->factor) == 0;
+}
+
+// Behind the last of its factor.
+static bool insert(struct choices *c, struct choice_contrast contrast)
+{
+    if (!sample_grow(&c->contrasts, c->contrast_count, sizeof c->contrasts[0]))
+        return false;
+    size_t place = c->contrast_count;
+    for (size_t i = 0; i < c->contrast_count; i++)
+        if (same_family(&c->contrasts[i], &contrast))
+            place = i + 1;
+    memmove(&c->contrasts[place + 1], &c->contrasts[place], (c->contrast_count - place) * sizeof contrast);
+    c->contrasts[place] = contrast;
+    c->contrast_count++;
+    return true;
+}
+
 static bool collect(struct choices *c)
 {
     size_t level;
@@ -117,18 +137,12 @@ static bool collect(struct choices *c)
                 known = is_of(&c->contrasts[k], a, b, level);
             if (known)
                 continue;
-            if (!sample_grow(&c->contrasts, c->contrast_count, sizeof c->contrasts[0]))
+            const struct choice_level *x = &a->levels[level], *y = &b->levels[level];
+            if (!insert(c, (struct choice_contrast){
+                               .block = a->block, .factor = x->factor, .a = x->value, .b = y->value}))
                 return false;
-            const struct choice_level *x = &a->levels[level];
-            c->contrasts[c->contrast_count++] = (struct choice_contrast){
-                .block = a->block, .factor = x->factor, .a = x->value, .b = b->levels[level].value};
         }
     return true;
-}
-
-static bool same_family(const struct choice_contrast *x, const struct choice_contrast *y)
-{
-    return strcmp(x->block, y->block) == 0 && strcmp(x->factor, y->factor) == 0;
 }
 
 // Over the pairs of one factor's levels.
