@@ -1,5 +1,6 @@
 #include "analysis/report/choices.h"
 
+#include "analysis/stats/multiple.h"
 #include "analysis/stats/quantile.h"
 
 #include <math.h>
@@ -63,25 +64,36 @@ static struct choice_cell *find_cell(struct filling *f, const struct store_trial
     return &c->cells[c->cell_count++];
 }
 
+// The counts of a person in a cell; NULL where memory ran out.
+static struct stat_person *find_person(struct choice_cell *cell, size_t person)
+{
+    for (size_t i = 0; i < cell->people; i++)
+        if (cell->person[i] == person)
+            return &cell->counts[i];
+    if (!sample_grow(&cell->person, cell->people, sizeof cell->person[0]) ||
+        !sample_grow(&cell->counts, cell->people, sizeof cell->counts[0]))
+        return NULL;
+    cell->person[cell->people] = person;
+    cell->counts[cell->people] = (struct stat_person){0, 0};
+    return &cell->counts[cell->people++];
+}
+
 static bool add_answer(struct choice_cell *cell, const struct store_trial_row *row, size_t person)
 {
-    if (!sample_grow(&cell->person, cell->answers, sizeof cell->person[0]) ||
-        !sample_grow(&cell->toggle, cell->answers, sizeof cell->toggle[0]))
+    struct stat_person *counts = find_person(cell, person);
+    if (!counts || !sample_grow(&cell->toggle, cell->answers, sizeof cell->toggle[0]))
         return false;
     if (!isnan(row->reaction_s)) {
         if (!sample_grow(&cell->reaction_s, cell->reactions, sizeof cell->reaction_s[0]))
             return false;
         cell->reaction_s[cell->reactions++] = row->reaction_s;
     }
-    bool known = false;
-    for (size_t i = 0; i < cell->answers && !known; i++)
-        known = cell->person[i] == person;
-    cell->persons += !known;
-    cell->person[cell->answers] = person;
     cell->toggle[cell->answers++] = (double)row->toggles;
     cell->equal += row->chosen == '=';
     cell->n += row->chosen != '=';
     cell->chosen += row->chosen == 't';
+    counts->n += row->chosen != '=';
+    counts->k += row->chosen == 't';
     return true;
 }
 
@@ -136,27 +148,20 @@ static int by_levels(const void *x, const void *y)
     return order ? order : (a->reference > b->reference) - (a->reference < b->reference);
 }
 
-static void finish_cell(struct choice_cell *cell, double conf)
+static void finish_cell(struct choice_cell *cell, const struct choices_desc *desc)
 {
-    cell->pooled = (int64_t)cell->answers > cell->persons;
-    cell->test_of = stat_binomial_test(cell->chosen, cell->n, 0.5, conf, STAT_TWO_SIDED);
+    choice_cell_test(cell, desc);
     cell->toggles = stat_moments(cell->toggle, cell->answers);
     stat_sort(cell->reaction_s, cell->reactions);
     cell->reaction_median_s = stat_quantile(cell->reaction_s, cell->reactions, 0.5);
 }
 
-static bool finish(struct choices *c)
+// Over all answers; `values` has room for two per answer.
+static void finish_totals(struct choices *c, double *values, size_t total)
 {
-    size_t total = 0, toggles = 0, reactions = 0;
-    for (size_t i = 0; i < c->cell_count; i++)
-        total += c->cells[i].answers;
-    double *values = malloc((2 * total + 1) * sizeof *values);
-    if (!values)
-        return false;
+    size_t toggles = 0, reactions = 0;
     for (size_t i = 0; i < c->cell_count; i++) {
-        struct choice_cell *cell = &c->cells[i];
-        finish_cell(cell, c->conf);
-        c->pooled = c->pooled || cell->pooled;
+        const struct choice_cell *cell = &c->cells[i];
         for (size_t j = 0; j < cell->answers; j++)
             values[toggles++] = cell->toggle[j];
         for (size_t j = 0; j < cell->reactions; j++)
@@ -165,15 +170,53 @@ static bool finish(struct choices *c)
     c->toggles = stat_moments(values, toggles);
     stat_sort(values + total, reactions);
     c->reaction_median_s = stat_quantile(values + total, reactions, 0.5);
+}
+
+// `values` has room for two per cell.
+static void finish_holm(struct choices *c, double *values)
+{
+    double *adjusted = values + c->cell_count;
+    for (size_t i = 0; i < c->cell_count; i++)
+        values[i] = c->cells[i].p_value;
+    stat_adjust_holm(values, c->cell_count, adjusted);
+    for (size_t i = 0; i < c->cell_count; i++)
+        c->cells[i].holm = adjusted[i];
+}
+
+static bool finish(struct choices *c, const struct choices_desc *desc)
+{
+    size_t total = 0;
+    for (size_t i = 0; i < c->cell_count; i++)
+        total += c->cells[i].answers;
+    double *values = malloc((2 * total + 1) * sizeof *values); // a cell has an answer at least
+    if (!values)
+        return false;
+    for (size_t i = 0; i < c->cell_count; i++) {
+        struct choice_cell *cell = &c->cells[i];
+        finish_cell(cell, desc);
+        c->several = c->several || cell->several;
+        c->one_each = c->one_each || (cell->n > 0 && !cell->several);
+        c->tested += cell->n > 0;
+    }
+    finish_totals(c, values, total);
+    finish_holm(c, values);
     free(values);
     if (c->cell_count > 1)
         qsort(c->cells, c->cell_count, sizeof c->cells[0], by_levels);
-    return true;
+    return choices_contrast(c);
 }
 
 bool choices_load(struct choices *out, struct sample *sample, double conf, char *error, size_t error_size)
 {
-    *out = (struct choices){.conf = conf};
+    return choices_load_for(out, sample, &(struct choices_desc){.conf = conf}, error, error_size);
+}
+
+bool choices_load_for(struct choices *out, struct sample *sample, const struct choices_desc *desc, char *error,
+                      size_t error_size)
+{
+    struct choices_desc d = {desc->conf == 0 ? 0.95 : desc->conf, desc->p0 == 0 ? 0.5 : desc->p0,
+                             desc->alternative};
+    *out = (struct choices){.conf = d.conf, .p0 = d.p0, .alternative = d.alternative};
     bool ok = true;
     snprintf(error, error_size, "not enough memory");
     for (size_t i = 0; ok && i < sample->file_count; i++) {
@@ -182,7 +225,7 @@ bool choices_load(struct choices *out, struct sample *sample, double conf, char 
         if (!ok && store_reader_error(sample->files[i])[0])
             snprintf(error, error_size, "%s", store_reader_error(sample->files[i]));
     }
-    if (ok && finish(out)) {
+    if (ok && finish(out, &d)) {
         error[0] = '\0';
         return true;
     }
@@ -194,9 +237,11 @@ void choices_free(struct choices *choices)
 {
     for (size_t i = 0; i < choices->cell_count; i++) {
         free(choices->cells[i].person);
+        free(choices->cells[i].counts);
         free(choices->cells[i].toggle);
         free(choices->cells[i].reaction_s);
     }
     free(choices->cells);
+    free(choices->contrasts);
     *choices = (struct choices){0};
 }

@@ -1,5 +1,6 @@
 // Franke et al. 2021, "Time-Warped Foveated Rendering for Virtual Reality Headsets", Figure 7, with each cell's
-// own null region where the paper draws one for all.
+// own null region where the paper draws one for all. That region is of a binomial test; where a person answered
+// several times in a cell, the interval is drawn instead.
 #include "analysis/report/figures.h"
 #include "analysis/report/level.h"
 
@@ -11,15 +12,35 @@ enum { CROWDED = 18 }; // bars beyond which numbers in them no longer fit
 
 static const double group_gap = 0.5; // in bar slots
 
+static const char regions[] =
+    "'data' index 0 using 1:3:($1-0.5):($1+0.5):3:4 with boxxyerror fs solid noborder fc rgb "
+    "'" FIGURE_GREEN "', ";
+static const char region_edges[] =
+    ", '' index 0 using ($1-0.5):3:(1):(0) with vectors nohead lw 1.5 lc rgb '" FIGURE_GREEN_EDGE
+    "', '' index 0 using ($1-0.5):4:(1):(0) with vectors nohead lw 1.5 lc rgb '" FIGURE_GREEN_EDGE "'";
+static const char intervals[] =
+    ", '' index 0 using 1:($2+0*$5):5:6 with yerrorbars pt 7 ps 0.4 lw 1.6 lc rgb '" FIGURE_INK "'";
+
+// gnuplot leaves out what is NaN; the axis ends at 0 and 100.
+static void write_range(FILE *data, bool any, double low, double high)
+{
+    if (any && !isnan(low))
+        fprintf(data, "%.6f %.6f ", fmax(0, low), fmin(100, high));
+    else
+        fputs("NaN NaN ", data);
+}
+
+// Columns: place, percent, null region, interval, three words.
 static void write_bar(FILE *data, const struct choice_cell *cell, size_t index, double x, bool narrow)
 {
-    const struct stat_binomial *b = &cell->test_of;
+    const struct stat_region *region = &cell->binomial.null_region;
     double n = (double)cell->n;
-    double low = fmax(0, 100 * ((double)b->null_region.low - 0.5) / n);
-    double high = fmin(100, 100 * ((double)b->null_region.high + 0.5) / n);
     char word[96];
-    fprintf(data, "%.3f %.6f %.6f %.6f ", x, 100 * b->estimate, low, high);
-    snprintf(word, sizeof word, narrow ? "%.0f" : "%.0f %%", 100 * b->estimate);
+    fprintf(data, "%.3f %.6f ", x, 100 * cell->estimate);
+    write_range(data, !cell->several, 100 * ((double)region->low - 0.5) / n,
+                100 * ((double)region->high + 0.5) / n);
+    write_range(data, cell->several, 100 * cell->ci.low, 100 * cell->ci.high);
+    snprintf(word, sizeof word, narrow ? "%.0f" : "%.0f %%", 100 * cell->estimate);
     figure_word(data, word);
     snprintf(word, sizeof word, "%" PRId64 "/%" PRId64, cell->chosen, cell->n);
     fputc(' ', data);
@@ -97,19 +118,18 @@ bool figure_choices(const struct choices *choices, const struct figure_desc *des
         "set arrow from graph 0, first 50 to graph 1, first 50 nohead front lw 1.2 dt (6,4) lc rgb '" FIGURE_INK
         "'\n",
         last + 0.6, 6);
-    fputs("plot 'data' index 0 using 1:3:($1-0.5):($1+0.5):3:4 with boxxyerror fs solid noborder fc rgb "
-          "'" FIGURE_GREEN "', '' index 0 using 1:2:(0.6) with boxes fs solid noborder fc rgb '" FIGURE_ORANGE
-          "', '' index 0 using ($1-0.5):3:(1):(0) with vectors nohead lw 1.5 lc rgb '" FIGURE_GREEN_EDGE
-          "', '' index 0 using ($1-0.5):4:(1):(0) with vectors nohead lw 1.5 lc rgb '" FIGURE_GREEN_EDGE "'",
-          figure.script);
     fprintf(figure.script,
-            ", '' index 0 using 1:(-5):7 with labels tc rgb '" FIGURE_INK "'"
+            "plot %s'data' index 0 using 1:2:(0.6) with boxes fs solid noborder fc rgb '" FIGURE_ORANGE "'%s%s",
+            choices->one_each ? regions : "", choices->one_each ? region_edges : "",
+            choices->several ? intervals : "");
+    fprintf(figure.script,
+            ", '' index 0 using 1:(-5):9 with labels tc rgb '" FIGURE_INK "'"
             ", '' index 1 using 1:(-14):2 with labels font ',%d' tc rgb '" FIGURE_INK "'",
             font + 1);
     if (numbers)
         fprintf(figure.script,
-                ", '' index 0 using 1:(%s):5 with labels tc rgb '" FIGURE_INK "'"
-                ", '' index 0 using 1:(4):6 with labels font ',%d' tc rgb '" FIGURE_INK "'",
+                ", '' index 0 using 1:(%s):7 with labels tc rgb '" FIGURE_INK "'"
+                ", '' index 0 using 1:(4):8 with labels font ',%d' tc rgb '" FIGURE_INK "'",
                 desc->narrow ? "11" : "10", font - 2);
     fputc('\n', figure.script);
     return figure_end(&figure, desc->text, out_svg, error, error_size);

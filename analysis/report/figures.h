@@ -19,7 +19,8 @@ struct figure_desc {
 
 // Franke 2021, Figure 7: bars of the percent of choices for the test option, in groups of the first factor's
 // levels, over each cell's null region for its own n. The region is drawn half an answer wider than its
-// outermost counts, so that a bar ends clearly inside or outside.
+// outermost counts, so that a bar ends clearly inside or outside. Where somebody answered more than once in a
+// cell, its interval is drawn instead.
 bool figure_choices(const struct choices *choices, const struct figure_desc *desc, char **out_svg, char *error,
                     size_t error_size);
 

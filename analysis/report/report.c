@@ -17,8 +17,7 @@ const char *report_label(const struct report *r, size_t condition)
 
 bool report_outside(const struct choice_cell *cell)
 {
-    return cell->n &&
-           (cell->chosen < cell->test_of.null_region.low || cell->chosen > cell->test_of.null_region.high);
+    return cell->clear;
 }
 
 void report_figure(const struct report *r, const struct figure_pair *figure, const char *caption)

@@ -94,7 +94,7 @@ static void choice_cells(FILE *out, const struct choice_cell *cell)
         html_cell(out, "td", "\u2013");
         return;
     }
-    html_p_value(p, cell->test_of.p_value);
+    html_p_value(p, cell->p_value);
     html_cell(out, "td", "%" PRId64 " of %" PRId64, cell->chosen, cell->n);
     html_cell(out, "td", "%s", p);
 }

@@ -6,7 +6,7 @@
 #include <inttypes.h>
 #include <math.h>
 
-static void cell_words(const struct choice_cell *cell, char out[256])
+void report_cell_words(const struct choice_cell *cell, char out[256])
 {
     if (cell->level_count)
         level_join(cell, 0, cell->level_count, out);
@@ -22,7 +22,7 @@ static void list_outside(const struct report *r, bool for_test)
         if (!report_outside(cell) || (2 * cell->chosen > cell->n) != for_test)
             continue;
         char words[256];
-        cell_words(cell, words);
+        report_cell_words(cell, words);
         html_printf(r->out, "%s%s (%" PRId64 " of %" PRId64 ")", first ? "" : "; ", words, cell->chosen,
                     cell->n);
         first = false;
@@ -31,19 +31,25 @@ static void list_outside(const struct report *r, bool for_test)
 
 void report_summary(const struct report *r)
 {
-    int64_t cells = 0, test = 0, reference = 0;
+    int64_t cells = 0, test = 0, reference = 0, holm = 0;
     for (size_t i = 0; i < r->choices.cell_count; i++) {
         const struct choice_cell *cell = &r->choices.cells[i];
         cells += cell->n > 0;
         test += report_outside(cell) && 2 * cell->chosen > cell->n;
         reference += report_outside(cell) && 2 * cell->chosen < cell->n;
+        holm += cell->holm <= 1 - r->conf;
     }
     if (cells == 0)
         return;
     fputs("<p class=\"lead\">", r->out);
-    html_printf(r->out,
-                "Of %" PRId64 " cells, %" PRId64 " %s outside the %g\u00a0%% region of the null hypothesis",
-                cells, test + reference, test + reference == 1 ? "lies" : "lie", 100 * r->conf);
+    const char *is = test + reference == 1 ? "lies" : "lie";
+    if (r->choices.several)
+        html_printf(r->out, "Of %" PRId64 " cells, %" PRId64 " %s a preference (p \u2264 %.4g)", cells,
+                    test + reference, test + reference == 1 ? "shows" : "show", 1 - r->conf);
+    else
+        html_printf(r->out,
+                    "Of %" PRId64 " cells, %" PRId64 " %s outside the %g\u00a0%% region of the null hypothesis",
+                    cells, test + reference, is, 100 * r->conf);
     if (reference) {
         fputs("; the reference was preferred for ", r->out);
         list_outside(r, false);
@@ -56,44 +62,69 @@ void report_summary(const struct report *r)
     if (cells > test + reference)
         fputs("The other cells show no clear preference, which does not show that the options look the same. ",
               r->out);
-    fputs("No correction for the number of cells is made.</p>\n", r->out);
+    html_printf(r->out, "With Holm\u2019s correction for the number of cells, %" PRId64 " of them %s.", holm,
+                holm == 1 ? "remains" : "remain");
+    fputs("</p>\n", r->out);
 }
 
 static void choices_caption(const struct report *r, char *out, size_t size)
 {
+    char region[512] = "", interval[256] = "";
+    if (r->choices.one_each)
+        snprintf(
+            region, sizeof region,
+            "<span class=\"key\" style=\"background:#cfe6d2\"></span> The %g&nbsp;%% region of the null "
+            "hypothesis (both options chosen equally often) for each cell\u2019s own n, drawn half an answer "
+            "wider on both sides; a bar that ends outside it shows a preference. ",
+            100 * r->conf);
+    if (r->choices.several)
+        snprintf(
+            interval, sizeof interval,
+            "%s the mean of the people\u2019s shares, with its %g&nbsp;%% t interval as a line instead of a "
+            "region. ",
+            r->choices.one_each ? "Where a person answered several times in a cell, the bar is"
+                                : "Each person answered several times in a cell; the bar is",
+            100 * r->conf);
     snprintf(
         out, size,
-        "<span class=\"key\" style=\"background:#e8912d\"></span> Percent of choices for the test option. "
-        "<span class=\"key\" style=\"background:#cfe6d2\"></span> The %g&nbsp;%% region of the null hypothesis "
-        "(both options chosen equally often) for each cell\u2019s own n, drawn half an answer wider on both "
-        "sides; "
-        "a bar that ends outside it shows a preference. Dashed: 50&nbsp;%%. In the bars: percent, and answers "
-        "for "
-        "the test option of all answers.%s",
-        100 * r->conf,
+        "<span class=\"key\" style=\"background:#e8912d\"></span> Percent of choices for the test option. %s%s"
+        "Dashed: 50&nbsp;%%. In the bars: percent, and answers for the test option of all answers.%s",
+        region, interval,
         r->choices.cells[0].level_count ? "" : " Numbers under the bars are those of the table\u2019s rows.");
 }
 
 static void choice_row(const struct report *r, const struct choice_cell *cell, size_t index)
 {
     FILE *out = r->out;
-    const struct stat_binomial *b = &cell->test_of;
-    char words[256], p[24];
-    cell_words(cell, words);
-    html_p_value(p, b->p_value);
+    const struct stat_region *region = &cell->binomial.null_region;
+    char words[256], p[24], holm[24];
+    report_cell_words(cell, words);
+    html_p_value(p, cell->p_value);
+    html_p_value(holm, cell->holm);
     fprintf(out, "<tr%s>", report_outside(cell) ? " class=\"outside\"" : "");
     if (!cell->level_count)
         html_cell(out, "td", "%zu", index + 1);
-    html_cell(out, "th scope=\"row\" class=\"word\"", "%s%s", words, cell->pooled ? " *" : "");
+    html_cell(out, "th scope=\"row\" class=\"word\"", "%s", words);
     html_cell(out, "td", "%" PRId64, cell->chosen);
     html_cell(out, "td", "%" PRId64, cell->n);
+    if (r->choices.several)
+        html_cell(out, "td", "%zu", cell->people);
     if (cell->n) {
-        html_cell(out, "td class=\"share\"", "%.1f\u00a0%%", 100 * b->estimate);
-        html_cell(out, "td", "%.1f to %.1f\u00a0%%", 100 * b->ci.low, 100 * b->ci.high);
-        html_cell(out, "td", "%" PRId64 " to %" PRId64, b->null_region.low, b->null_region.high);
+        html_cell(out, "td class=\"share\"", "%.1f\u00a0%%", 100 * cell->estimate);
+        if (isnan(cell->ci.low))
+            html_cell(out, "td", "\u2013");
+        else
+            html_cell(out, "td", "%.1f to %.1f\u00a0%%", 100 * cell->ci.low, 100 * cell->ci.high);
+        if (cell->method == CHOICE_BINOMIAL)
+            html_cell(out, "td", "%" PRId64 " to %" PRId64, region->low, region->high);
+        else
+            html_cell(out, "td", "\u2013");
+        if (r->choices.several)
+            html_cell(out, "td class=\"word\"", "%s", choice_method_word(cell->method));
         html_cell(out, "td", "%s", p);
+        html_cell(out, "td", "%s", holm);
     } else {
-        for (int i = 0; i < 4; i++)
+        for (int i = 0; i < (r->choices.several ? 6 : 5); i++)
             html_cell(out, "td", "none");
     }
     html_cell(out, "td class=\"word\"", "%s",
@@ -107,20 +138,23 @@ static void choices_table(const struct report *r)
     FILE *out = r->out;
     const struct choices *c = &r->choices;
     bool numbered = c->cells[0].level_count == 0;
-    fputs("<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"Choices per "
-          "cell\"><table>\n<caption>Choices per "
-          "cell, exact two-sided binomial test against 50&nbsp;%</caption>\n<thead><tr>",
-          out);
+    fprintf(out,
+            "<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"Choices per "
+            "cell\"><table>\n<caption>Choices per cell, %s against 50&nbsp;%%</caption>\n<thead><tr>",
+            !c->several   ? "exact two-sided binomial test"
+            : c->one_each ? "exact two-sided binomial or sign-flip test"
+                          : "exact two-sided sign-flip test");
     fputs(numbered ? "<th scope=\"col\">no.</th>" : "", out);
-    fputs("<th scope=\"col\" class=\"word\">cell</th><th scope=\"col\">test</th><th scope=\"col\">n</th><th "
-          "scope=\"col\">"
-          "share</th>",
+    fputs("<th scope=\"col\" class=\"word\">cell</th><th scope=\"col\">test</th><th scope=\"col\">n</th>", out);
+    fputs(c->several ? "<th scope=\"col\">people</th>" : "", out);
+    fprintf(out,
+            "<th scope=\"col\">share</th><th scope=\"col\">%g&nbsp;%% interval</th><th scope=\"col\">null "
+            "region</th>",
+            100 * c->conf);
+    fputs(c->several ? "<th scope=\"col\" class=\"word\">tested by</th>" : "", out);
+    fputs("<th scope=\"col\">p</th><th scope=\"col\">p (Holm)</th><th scope=\"col\" "
+          "class=\"word\">preferred</th></tr></thead>\n<tbody>\n",
           out);
-    fprintf(
-        out,
-        "<th scope=\"col\">%g&nbsp;%% interval</th><th scope=\"col\">null region</th><th scope=\"col\">p</th>",
-        100 * c->conf);
-    fputs("<th scope=\"col\" class=\"word\">preferred</th></tr></thead>\n<tbody>\n", out);
     for (size_t i = 0; i < c->cell_count; i++)
         choice_row(r, &c->cells[i], i);
     fputs("</tbody></table></div>\n", out);
@@ -129,11 +163,6 @@ static void choices_table(const struct report *r)
 static void choices_notes(const struct report *r)
 {
     const struct choices *c = &r->choices;
-    if (c->pooled)
-        fputs("<p class=\"note\"><strong>* Pooled:</strong> these cells hold several answers of one person. "
-              "The test takes "
-              "all answers as independent, so its p and interval are too optimistic.</p>\n",
-              r->out);
     for (size_t i = 0; i < c->cell_count; i++)
         if (c->cells[i].equal) {
             fputs("<p>", r->out);
@@ -163,12 +192,13 @@ void report_choices(const struct report *r)
         fputs("<p class=\"note\">No choice was recorded that counts.</p>\n", r->out);
         return;
     }
-    char caption[1024];
+    char caption[1536];
     choices_caption(r, caption, sizeof caption);
     options_sentence(r);
     report_figure(r, &r->choices_figure, caption);
     choices_table(r);
     choices_notes(r);
+    report_people(r);
 }
 
 static void number_cell(FILE *out, double value, const char *unit)
@@ -193,7 +223,7 @@ static void toggles_table(const struct report *r)
     for (size_t i = 0; i < r->choices.cell_count; i++) {
         const struct choice_cell *cell = &r->choices.cells[i];
         char words[256];
-        cell_words(cell, words);
+        report_cell_words(cell, words);
         fputs("<tr>", out);
         html_cell(out, "th scope=\"row\" class=\"word\"", "%s", words);
         html_cell(out, "td", "%zu", cell->answers);

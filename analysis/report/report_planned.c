@@ -8,14 +8,10 @@
 static const struct {
     const char *plan, *section; // as store_session_row has plans
 } answers[] = {
-    {"binomial choice cell", "Choices"},
-    {"mean toggles study", "Toggles before answering"},
-    {"unpaired_t rating order", "Ratings"},
-    {"paired_t rating order", "Ratings"},
-    {"paired_t rating cell", "Ratings"},
-    {"anova rating factor", "Ratings"},
-    {"paired_t rating factor", "Ratings"},
-    {"mean rating factor", "Ratings"},
+    {"binomial choice cell", "Choices"},    {"mean toggles study", "Toggles before answering"},
+    {"unpaired_t rating order", "Ratings"}, {"paired_t rating order", "Ratings"},
+    {"paired_t rating cell", "Ratings"},    {"anova rating factor", "Ratings"},
+    {"paired_t rating factor", "Ratings"},  {"mean rating factor", "Ratings"},
 };
 
 static const char *answer_of(const char *plan)

@@ -222,10 +222,16 @@ void report_definitions(const struct report *r)
         {"Null region",
          "The smallest and largest count whose two-sided p exceeds 1 minus the confidence, for the cell\u2019s "
          "own n (6 to 16 for n = 22 at 95 %)."},
-        {"Interval", "Clopper\u2013Pearson for shares, by Student\u2019s t for means and their differences."},
+        {"Interval",
+         "Clopper\u2013Pearson for shares of one answer per person, by Student\u2019s t for means, for "
+         "means of people\u2019s shares and for differences."},
         {"p", "Two-sided binomial p: the probability of all counts no more probable than the one seen, if both "
               "options were "
-              "chosen equally often. A large p is no evidence that options look the same."},
+              "chosen equally often. Two-sided sign-flip p: the share of all ways to flip the people\u2019s "
+              "signs that lean "
+              "at least as far. A large p is no evidence that options look the same."},
+        {"p (Holm)",
+         "Adjusted for the number of cells: under it, the chance of any false finding among them is kept."},
         {"Toggles", "Switches between the two options before the answer."},
         {"Reaction time", "From the moment an answer was allowed to the answer; the median per cell."},
         {"\u03b5, fovea",

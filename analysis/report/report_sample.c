@@ -256,26 +256,11 @@ void report_sample(const struct report *r)
     differing_note(r);
 }
 
-static void methods_choices(const struct report *r)
-{
-    html_printf(r->out,
-                "Choices were compared with an even split by the exact two-sided binomial test (method of "
-                "small p-values), "
-                "with Clopper\u2013Pearson intervals; the null region of a cell is the range of counts with p "
-                "> %.4g for that "
-                "cell\u2019s own n. ",
-                1 - r->conf);
-    fputs(r->choices.pooled ? "In cells marked * answers of one person are pooled. "
-                            : "Each person gave at most one answer per cell, so the answers within a cell are "
-                              "independent. ",
-          r->out);
-}
-
 void report_methods(const struct report *r)
 {
     fputs("<h2>Methods</h2>\n<p>", r->out);
     if (r->choices.cell_count)
-        methods_choices(r);
+        report_choices_methods(r);
     if (r->ratings.question_count)
         fputs(
             "First ratings were compared between the two order groups by Welch\u2019s t-test, and the second "
@@ -301,8 +286,8 @@ void report_methods(const struct report *r)
               "noncentral t distribution. ",
               r->out);
     html_printf(r->out,
-                "Intervals cover %g\u00a0%%. Other p-values than Holm\u2019s are not corrected for the number "
-                "of tests. ",
+                "Intervals cover %g\u00a0%%. Where Holm is not named, p-values are not corrected for "
+                "the number of tests. ",
                 100 * r->conf);
     if (r->sample->simulated)
         fputs("<strong>All sessions are simulated:</strong> the answers come from a model that reads image "

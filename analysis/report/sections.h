@@ -40,8 +40,11 @@ struct report {
 void report_summary(const struct report *r);
 void report_sample(const struct report *r);
 void report_methods(const struct report *r);
-void report_planned(const struct report *r); // what the protocol planned, and where it is answered
+void report_planned(const struct report *r);         // what the protocol planned, and where it is answered
+void report_choices_methods(const struct report *r); // sentences
 void report_choices(const struct report *r);
+void report_people(const struct report *r); // cells with several answers per person
+void report_cell_words(const struct choice_cell *cell, char out[256]);
 void report_toggles(const struct report *r);
 void report_ratings(const struct report *r);
 // A cell; one that reaches to infinity says that n is too small for its confidence.
@@ -60,6 +63,7 @@ void report_definitions(const struct report *r);
 // Both widths of a figure and its caption, which is HTML.
 void report_figure(const struct report *r, const struct figure_pair *figure, const char *caption);
 const char *report_label(const struct report *r, size_t condition);
-bool report_outside(const struct choice_cell *cell); // outside the null region
+bool report_outside(
+    const struct choice_cell *cell); // p <= 1 - conf; of a binomial test, outside the null region
 
 #endif

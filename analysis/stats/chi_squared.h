@@ -1,6 +1,6 @@
 // Pearson's chi-squared test of independence.
 //
-// Assumes that every count is another person: one answer each. For several answers of a person see people.h,
+// Assumes that every count is another person: one answer each. For several answers of a person see exchange.h,
 // for the same people under both conditions mcnemar.h and cochran.h.
 #ifndef ANALYSIS_STATS_CHI_SQUARED_H
 #define ANALYSIS_STATS_CHI_SQUARED_H

@@ -1,144 +1,67 @@
-// Permutation of people among groups of their own sizes: Good, P. (2005), Permutation, parametric and bootstrap
-// tests of hypotheses, 3rd ed., chapters 3 and 7 (what is exchanged is what was assigned: the person, with all
-// answers). All arrangements in the order of their labels where there are few, random ones else.
+// Overdispersion: McCullagh, P. & Nelder, J. A. (1989), Generalized Linear Models, 2nd ed., section 4.5.2: X^2
+// over N - p, here with one parameter, the common share; R's quasibinomial has the same. With one answer each,
+// X^2 is N whatever the answers are, so it says nothing.
 #include "analysis/stats/people.h"
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
-struct arrangement {
-    const struct stat_people *of;
-    int *label; // owned; a group for each person
-    double column[STAT_PEOPLE_CATEGORIES], all;
-};
-
-static double chi_squared(const struct arrangement *a)
+struct stat_people stat_people_sum(const struct stat_person *people, size_t count)
 {
-    double cell[STAT_PEOPLE_GROUPS][STAT_PEOPLE_CATEGORIES] = {{0}}, row[STAT_PEOPLE_GROUPS] = {0}, sum = 0;
-    size_t categories = a->of->categories;
-    for (size_t i = 0; i < a->of->people; i++)
-        for (size_t j = 0; j < categories; j++) {
-            double count = (double)a->of->counts[i * categories + j];
-            cell[a->label[i]][j] += count;
-            row[a->label[i]] += count;
-        }
-    for (size_t g = 0; g < a->of->groups; g++)
-        for (size_t j = 0; j < categories && row[g] > 0; j++) {
-            double expected = row[g] * a->column[j] / a->all, off = cell[g][j] - expected;
-            sum += off * off / expected;
-        }
+    struct stat_people sum = {.ok = true};
+    for (size_t i = 0; i < count; i++) {
+        const struct stat_person *p = &people[i];
+        if (p->n < 0 || p->n > STAT_PEOPLE_MAX_N || p->k < 0 || p->k > p->n)
+            return (struct stat_people){.ok = false};
+        if (p->n == 0)
+            continue;
+        sum.least_n = sum.people == 0 || p->n < sum.least_n ? p->n : sum.least_n;
+        sum.most_n = p->n > sum.most_n ? p->n : sum.most_n;
+        sum.people++;
+        sum.k += p->k;
+        sum.n += p->n;
+    }
     return sum;
 }
 
-static bool in_range(const struct stat_people *p)
+struct stat_ttest stat_people_t(const struct stat_person *people, size_t count,
+                                const struct stat_ttest_options *options)
 {
-    return p->group && p->counts && p->people >= 2 && p->people <= STAT_PEOPLE_MOST && p->groups >= 2 &&
-           p->groups <= STAT_PEOPLE_GROUPS && p->categories >= 2 && p->categories <= STAT_PEOPLE_CATEGORIES;
+    struct stat_people sum = stat_people_sum(people, count);
+    double *shares = sum.ok && sum.people ? malloc(sum.people * sizeof *shares) : NULL;
+    if (!shares)
+        return stat_ttest_one_sample(NULL, 0, options);
+    size_t used = 0;
+    for (size_t i = 0; i < count; i++)
+        if (people[i].n)
+            shares[used++] = (double)people[i].k / (double)people[i].n;
+    struct stat_ttest test = stat_ttest_one_sample(shares, used, options);
+    free(shares);
+    return test;
 }
 
-// Column sums; false for bad groups or counts, an empty group or an empty category.
-static bool add_up(const struct stat_people *p, struct arrangement *a)
+double stat_people_share(const struct stat_person *people, size_t count)
 {
-    double row[STAT_PEOPLE_GROUPS] = {0};
-    for (size_t i = 0; i < p->people; i++) {
-        if (p->group[i] < 0 || (size_t)p->group[i] >= p->groups)
-            return false;
-        for (size_t j = 0; j < p->categories; j++) {
-            int64_t count = p->counts[i * p->categories + j];
-            if (count < 0 || count > 1000000)
-                return false;
-            row[p->group[i]] += (double)count;
-            a->column[j] += (double)count;
-            a->all += (double)count;
-        }
+    struct stat_people sum = stat_people_sum(people, count);
+    if (!sum.ok || sum.people == 0)
+        return (double)NAN;
+    double shares = 0;
+    for (size_t i = 0; i < count; i++)
+        if (people[i].n)
+            shares += (double)people[i].k / (double)people[i].n;
+    return shares / (double)sum.people;
+}
+
+double stat_overdispersion(const struct stat_person *people, size_t count)
+{
+    struct stat_people sum = stat_people_sum(people, count);
+    if (!sum.ok || sum.people < 2 || sum.most_n < 2 || sum.k == 0 || sum.k == sum.n)
+        return (double)NAN;
+    double share = (double)sum.k / (double)sum.n, squares = 0;
+    for (size_t i = 0; i < count; i++) {
+        double n = (double)people[i].n, off = (double)people[i].k - n * share;
+        if (people[i].n)
+            squares += off * off / (n * share * (1 - share));
     }
-    for (size_t g = 0; g < p->groups; g++)
-        if (row[g] == 0)
-            return false;
-    for (size_t j = 0; j < p->categories; j++)
-        if (a->column[j] == 0)
-            return false;
-    return true;
-}
-
-// n! / (n1! n2! ...)
-static double arrangements_of(const struct stat_people *p)
-{
-    double count = 1, size[STAT_PEOPLE_GROUPS] = {0};
-    for (size_t i = 0; i < p->people && isfinite(count); i++) {
-        size[p->group[i]]++;
-        count *= (double)(i + 1) / size[p->group[i]];
-    }
-    return isfinite(count) ? round(count) : count;
-}
-
-static void swap(int *a, int *b)
-{
-    int kept = *a;
-    *a = *b;
-    *b = kept;
-}
-
-static int ascending(const void *a, const void *b)
-{
-    return *(const int *)a - *(const int *)b;
-}
-
-// The next order of the labels; false after the last. Knuth, D. E. (2011), The art of computer programming
-// 4A, 7.2.1.2, algorithm L.
-static bool next_order(int *label, size_t n)
-{
-    size_t j = n - 1;
-    while (j > 0 && label[j - 1] >= label[j])
-        j--;
-    if (j == 0)
-        return false;
-    size_t l = n - 1;
-    while (label[j - 1] >= label[l])
-        l--;
-    swap(&label[j - 1], &label[l]);
-    for (size_t k = n - 1; j < k; j++, k--)
-        swap(&label[j], &label[k]);
-    return true;
-}
-
-static struct stat_permutation try_all(struct arrangement *a, double data)
-{
-    int64_t reached = 0, arrangements = 0;
-    qsort(a->label, a->of->people, sizeof *a->label, ascending);
-    do {
-        reached += stat_permutation_reaches(chi_squared(a), data);
-        arrangements++;
-    } while (next_order(a->label, a->of->people));
-    return stat_permutation_done(data, reached, arrangements, true);
-}
-
-static struct stat_permutation draw(struct arrangement *a, double data, struct stat_permuting how)
-{
-    int64_t reached = 0;
-    uint64_t counter = 0;
-    for (int64_t i = 0; i < how.draws; i++) {
-        for (size_t j = a->of->people; j > 1; j--)
-            swap(&a->label[j - 1], &a->label[stat_permutation_below(how.seed, counter++, (uint32_t)j)]);
-        reached += stat_permutation_reaches(chi_squared(a), data);
-    }
-    return stat_permutation_done(data, reached, how.draws, false);
-}
-
-struct stat_permutation stat_people_test(const struct stat_people *people, struct stat_permuting how)
-{
-    struct arrangement a = {.of = people};
-    how = stat_permuting_defaults(how);
-    if (!in_range(people) || how.draws < 1 || how.draws > 1000000000 || !add_up(people, &a))
-        return stat_permutation_none();
-    a.label = malloc(people->people * sizeof *a.label);
-    if (!a.label)
-        return stat_permutation_none();
-    memcpy(a.label, people->group, people->people * sizeof *a.label);
-    double data = chi_squared(&a);
-    bool exact = arrangements_of(people) <= (double)how.exact_most;
-    struct stat_permutation out = exact ? try_all(&a, data) : draw(&a, data, how);
-    free(a.label);
-    return out;
+    return squares / ((double)sum.people - 1);
 }

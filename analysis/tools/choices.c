@@ -2,32 +2,41 @@
 
 #include "analysis/tools/arguments.h"
 #include "analysis/tools/binomial_json.h"
+#include "analysis/tools/choices_people.h"
 #include "analysis/tools/study_arguments.h"
 #include "analysis/tools/table.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 static const char help[] =
-    "usage: fovstats choices DB... [--conf C] [--simulated] [--json]\n"
+    "usage: fovstats choices DB... [--p P] [--alternative two-sided|less|greater] [--conf C] [--simulated]\n"
+    "                        [--json]\n"
     "\n"
-    "How often the test option was chosen, per cell (block, factor levels and options): percent, exact\n"
-    "two-sided binomial p against 0.5, Clopper-Pearson interval, the null region for the cell's own n,\n"
-    "toggles before answering and reaction time. Left and right are resolved by the stored test slot.\n"
-    "  --conf C     confidence of interval and null region (0.95)\n"
-    "  --simulated  analyse simulated sessions, which are left out otherwise\n"
-    "  --protocol N analyse the sessions of this protocol; else of the one with most sessions\n"
-    "  --json       one object with the cells in an array\n"
-    "The test takes a cell's answers as independent. A cell with several answers of one person is\n"
-    "marked \"pooled\": its p and interval are then too optimistic.\n";
+    "How often the test option was chosen, per cell (block, factor levels and options), tested against one\n"
+    "half, with toggles before answering and reaction time. Left and right are resolved by the stored test "
+    "slot.\n"
+    "  --p P            the preference under the null hypothesis (0.5)\n"
+    "  --alternative A  two-sided, less or greater\n"
+    "  --conf C         confidence of intervals and null regions (0.95)\n"
+    "  --simulated      analyse simulated sessions, which are left out otherwise\n"
+    "  --protocol N     analyse the sessions of this protocol; else of the one with most sessions\n"
+    "  --json           one object with the cells in an array\n"
+    "Where nobody answered more than once in a cell: the exact binomial test, Clopper-Pearson interval and "
+    "the\n"
+    "null region for the cell's own n. Where somebody did, people are tested, not answers: the exact "
+    "sign-flip\n"
+    "test of one half (the t-test of the people's shares against another P), the t interval of the shares, and "
+    "a\n"
+    "logistic mixed model; the binomial test of all answers stands below as the papers have it. Holm's p is\n"
+    "adjusted for all cells with an answer.\n";
+
+static const char *const alternatives[] = {"two-sided", "less", "greater"};
 
 static void print_notes(const struct sample *sample, const struct choices *c)
 {
-    if (c->pooled)
-        puts("* pooled: the cell holds several answers of one person; p and interval take them as independent "
-             "and are "
-             "too optimistic.");
     study_notes(sample);
     if (c->excluded)
         printf("Left out, answers to excluded trials: %" PRId64 ".\n", c->excluded);
@@ -40,48 +49,60 @@ static void print_notes(const struct sample *sample, const struct choices *c)
         printf("Left out, answers to trials without a test option: %" PRId64 ".\n", c->no_test_slot);
 }
 
+static void cell_row(struct table *t, const struct choice_cell *cell)
+{
+    const struct stat_region *region = &cell->binomial.null_region;
+    table_cell(t, "%s", cell->block);
+    table_cell(t, "%s", cell->label);
+    table_cell(t, "%" PRId64, cell->chosen);
+    table_cell(t, "%" PRId64, cell->n);
+    table_cell(t, "%zu", cell->people);
+    table_cell(t, "%.1f", 100 * cell->estimate);
+    table_cell(t, "%s", choice_method_word(cell->method));
+    choices_p_cell(t, cell->p_value);
+    choices_p_cell(t, cell->holm);
+    choices_range_cell(t, cell->ci);
+    if (cell->method == CHOICE_BINOMIAL)
+        table_cell(t, "%" PRId64 " to %" PRId64, region->low, region->high);
+    else
+        table_cell(t, "-");
+    table_cell(t, "%.2f", cell->toggles.mean);
+    table_cell(t, "%.2f", cell->toggles.sd);
+    table_cell(t, "%.2f", cell->reaction_median_s);
+}
+
 static bool print_text(const struct sample *sample, const struct choices *c)
 {
     char ci[32];
     snprintf(ci, sizeof ci, "%g %% CI", 100 * c->conf);
-    const char *const headings[] = {"<block", "<cell",       "chosen",  "n",  "%",          "p",
-                                    ci,       "null region", "toggles", "SD", "reaction s", NULL};
+    const char *const headings[] = {"<block",      "<cell",   "chosen", "n",          "people",
+                                    "%",           "<test",   "p",      "Holm p",     ci,
+                                    "null region", "toggles", "SD",     "reaction s", NULL};
     struct table t;
     table_init(&t, headings);
     bool equal = false;
     for (size_t i = 0; i < c->cell_count; i++) {
-        const struct choice_cell *cell = &c->cells[i];
-        const struct stat_binomial *b = &cell->test_of;
-        table_cell(&t, "%s", cell->block);
-        table_cell(&t, "%s%s", cell->label, cell->pooled ? " *" : "");
-        table_cell(&t, "%" PRId64, cell->chosen);
-        table_cell(&t, "%" PRId64, cell->n);
-        table_cell(&t, "%.1f", 100 * b->estimate);
-        table_cell(&t, "%.4f", b->p_value);
-        table_cell(&t, "%.1f to %.1f", 100 * b->ci.low, 100 * b->ci.high);
-        if (cell->n)
-            table_cell(&t, "%" PRId64 " to %" PRId64, b->null_region.low, b->null_region.high);
-        else
-            table_cell(&t, "none");
-        table_cell(&t, "%.2f", cell->toggles.mean);
-        table_cell(&t, "%.2f", cell->toggles.sd);
-        table_cell(&t, "%.2f", cell->reaction_median_s);
-        equal = equal || cell->equal;
+        cell_row(&t, &c->cells[i]);
+        equal = equal || c->cells[i].equal;
     }
     bool ok = table_print(&t, stdout);
     table_finish(&t);
     printf(
-        "\nchosen: answers for the test option; reaction: median. Toggles over all answers: M %.2f, SD %.2f.\n",
-        c->toggles.mean, c->toggles.sd);
+        "\nchosen: answers for the test option, tested against %g, %s; Holm p: adjusted for %zu %s; reaction: "
+        "median.\nToggles over all answers: M %.2f, SD %.2f.\n",
+        c->p0, alternatives[c->alternative], c->tested, c->tested == 1 ? "cell" : "cells", c->toggles.mean,
+        c->toggles.sd);
     for (size_t i = 0; equal && i < c->cell_count; i++)
         if (c->cells[i].equal)
             printf("%s: %" PRId64 " answers \"equal\" are not part of n.\n", c->cells[i].label,
                    c->cells[i].equal);
+    ok = ok && (!c->several || choices_people_print(c));
     print_notes(sample, c);
     return ok;
 }
 
-static void cell_json(struct json *json, const struct sample *sample, const struct choice_cell *cell)
+static void cell_json(struct json *json, const struct sample *sample, const struct choice_cell *cell,
+                      double conf)
 {
     json_open(json, NULL, '{');
     json_text(json, "block", cell->block);
@@ -97,10 +118,21 @@ static void cell_json(struct json *json, const struct sample *sample, const stru
     json_text(json, "test", cell->test == SAMPLE_NONE ? "" : sample->conditions[cell->test].label);
     json_text(json, "reference",
               cell->reference == SAMPLE_NONE ? "" : sample->conditions[cell->reference].label);
-    binomial_json(json, &cell->test_of);
+    struct stat_binomial shown = cell->binomial; // the members of a binomial test, with the test that was made
+    shown.p_value = cell->p_value;
+    shown.estimate = cell->estimate;
+    shown.ci = cell->ci;
+    if (cell->method != CHOICE_BINOMIAL)
+        shown.null_region = (struct stat_region){1, 0};
+    binomial_json(json, &shown);
+    json_text(json, "method", choice_method_word(cell->method));
+    json_number(json, "p_holm", cell->holm);
     json_integer(json, "equal", cell->equal);
-    json_integer(json, "participants", cell->persons);
-    json_bool(json, "pooled", cell->pooled);
+    json_integer(json, "participants", (int64_t)cell->people);
+    json_bool(json, "several_answers", cell->several);
+    json_number(json, "overdispersion", cell->overdispersion);
+    if (cell->several)
+        choices_people_json(json, cell, conf);
     json_number(json, "toggles_mean", cell->toggles.mean);
     json_number(json, "toggles_sd", cell->toggles.sd);
     json_number(json, "reaction_s_median", cell->reaction_median_s);
@@ -113,10 +145,13 @@ static void print_json(const struct sample *sample, const struct choices *c)
     json_open(&json, NULL, '{');
     study_title_json(&json, sample);
     json_number(&json, "conf", c->conf);
+    json_text(&json, "alternative", alternatives[c->alternative]);
+    json_integer(&json, "cells_tested", (int64_t)c->tested);
     json_open(&json, "cells", '[');
     for (size_t i = 0; i < c->cell_count; i++)
-        cell_json(&json, sample, &c->cells[i]);
+        cell_json(&json, sample, &c->cells[i], c->conf);
     json_close(&json, ']');
+    choices_contrasts_json(&json, c);
     json_integer(&json, "answers", c->answers);
     json_number(&json, "toggles_mean", c->toggles.mean);
     json_number(&json, "toggles_sd", c->toggles.sd);
@@ -132,16 +167,41 @@ static void print_json(const struct sample *sample, const struct choices *c)
     putchar('\n');
 }
 
+// Checks what was typed. Returns -1 to go on, else the exit code after a sentence.
+static int check(const struct command *command, const char *word, struct choices_desc *desc)
+{
+    if (!(desc->p0 > 0 && desc->p0 < 1))
+        return command_fail(command, EXIT_USAGE, "--p is %g but must lie between 0 and 1", desc->p0);
+    int alternative = 0;
+    while (alternative < 3 && strcmp(alternatives[alternative], word) != 0)
+        alternative++;
+    if (alternative == 3)
+        return command_fail(command, EXIT_USAGE,
+                            "--alternative is \"%s\" but must be two-sided, less or greater", word);
+    desc->alternative = (enum stat_alternative)alternative;
+    return -1;
+}
+
 static int run(const struct command *command, int argc, char **argv)
 {
     struct study_arguments arguments;
     struct sample sample;
-    int code = study_arguments_load(command, argc, argv, false, &arguments, &sample);
+    struct choices_desc desc = {.p0 = 0.5};
+    const char *word = alternatives[0];
+    const struct option own[] = {{"--p", OPTION_NUMBER, &desc.p0}, {"--alternative", OPTION_TEXT, &word}};
+    int code = study_arguments_load_with(command, argc, argv, false, own, sizeof own / sizeof own[0],
+                                         &arguments, &sample);
     if (code >= 0)
         return code;
+    code = check(command, word, &desc);
+    if (code >= 0) {
+        sample_free(&sample);
+        return code;
+    }
+    desc.conf = arguments.conf;
     char error[SAMPLE_ERROR_SIZE];
     struct choices c;
-    if (!choices_load(&c, &sample, arguments.conf, error, sizeof error)) {
+    if (!choices_load_for(&c, &sample, &desc, error, sizeof error)) {
         code = command_fail(command, EXIT_FAILED, "%s", error);
     } else if (c.cell_count == 0) {
         code = command_fail(command, EXIT_FAILED, "%s: no choice was recorded that counts",

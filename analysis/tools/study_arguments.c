@@ -1,21 +1,28 @@
 #include "analysis/tools/study_arguments.h"
 
-#include "analysis/tools/arguments.h"
-
 #include <inttypes.h>
 #include <stdio.h>
 
 int study_arguments_load(const struct command *command, int argc, char **argv, bool takes_output,
                          struct study_arguments *out, struct sample *out_sample)
 {
+    return study_arguments_load_with(command, argc, argv, takes_output, NULL, 0, out, out_sample);
+}
+
+int study_arguments_load_with(const struct command *command, int argc, char **argv, bool takes_output,
+                              const struct option *own, size_t own_count, struct study_arguments *out,
+                              struct sample *out_sample)
+{
     *out = (struct study_arguments){.conf = 0.95};
-    const struct option options[] = {{"--simulated", OPTION_FLAG, &out->simulated},
-                                     {"--conf", OPTION_NUMBER, &out->conf},
-                                     {"--protocol", OPTION_TEXT, &out->protocol},
-                                     takes_output ? (struct option){"-o", OPTION_TEXT, &out->output}
-                                                  : (struct option){"--json", OPTION_FLAG, &out->json}};
-    int count = 0,
-        code = arguments_parse(command, argc, argv, options, sizeof options / sizeof options[0], &count);
+    struct option options[4 + STUDY_OPTIONS] = {{"--simulated", OPTION_FLAG, &out->simulated},
+                                                {"--protocol", OPTION_TEXT, &out->protocol},
+                                                {"--conf", OPTION_NUMBER, &out->conf},
+                                                takes_output
+                                                    ? (struct option){"-o", OPTION_TEXT, &out->output}
+                                                    : (struct option){"--json", OPTION_FLAG, &out->json}};
+    for (size_t i = 0; i < own_count && i < STUDY_OPTIONS; i++)
+        options[4 + i] = own[i];
+    int count = 0, code = arguments_parse(command, argc, argv, options, 4 + own_count, &count);
     if (code >= 0)
         return code;
     if (count == 0)

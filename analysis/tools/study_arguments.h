@@ -3,8 +3,11 @@
 #define ANALYSIS_TOOLS_STUDY_ARGUMENTS_H
 
 #include "analysis/report/sample.h"
+#include "analysis/tools/arguments.h"
 #include "analysis/tools/command.h"
 #include "analysis/tools/json.h"
+
+enum { STUDY_OPTIONS = 8 };
 
 struct study_arguments {
     bool simulated, json;
@@ -16,6 +19,11 @@ struct study_arguments {
 // Parses and loads. Returns -1 with a sample that the caller frees, else the exit code.
 int study_arguments_load(const struct command *command, int argc, char **argv, bool takes_output,
                          struct study_arguments *out, struct sample *out_sample);
+// The same with at most STUDY_OPTIONS options of the subcommand's own. What they hold is for the caller to
+// check, which frees the sample then too.
+int study_arguments_load_with(const struct command *command, int argc, char **argv, bool takes_output,
+                              const struct option *own, size_t own_count, struct study_arguments *out,
+                              struct sample *out_sample);
 
 // The heading of the text output: files, sessions, participants; SIMULATED DATA where it is.
 void study_title(const struct sample *sample, const char *what);

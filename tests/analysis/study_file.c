@@ -165,6 +165,15 @@ static void fill(sqlite3 *db, const struct study_desc *desc)
         run(db, "INSERT INTO trial VALUES(19, 1, 1, 5, 'main', 'toggle', 'town', '{}', '{\"epsilon\":0.2}', 2, "
                 "1, 'a', 'a', "
                 "NULL, 1, NULL, 'done', 1, 0, 1); INSERT INTO choice VALUES(NULL, 19, 1, 'a', NULL, 1, 5, 0)");
+    for (int i = 1; desc->several && i <= PEOPLE; i++)
+        for (int j = 0; j < 8; j++)
+            run(db,
+                "INSERT INTO trial VALUES(%d, %d, %d, %d, 'main', 'toggle', 'atrium', '{}', "
+                "'{\"epsilon\":0.2}', 2, 1, "
+                "'a', 'a', NULL, 1, NULL, 'done', 1, 0, 1); INSERT INTO choice VALUES(NULL, %d, %d, '%s', "
+                "NULL, 1, 5, "
+                "0)",
+                1000 + 10 * i + j, i, i, 10 + j, 1000 + 10 * i + j, i, j < 5 * i % 9 ? "a" : "b");
     if (desc->excluded)
         run(db, "INSERT INTO exclusion VALUES(NULL, NULL, 22, NULL, 'gaze_loss', 'planned', 'half of the gaze "
                 "was lost', "

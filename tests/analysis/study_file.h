@@ -13,6 +13,8 @@ struct study_desc {
     bool simulated;
     bool empty;    // the schema alone
     bool pooled;   // person 1 answers the first cell twice
+    bool several;  // everybody answers the first cell eight times more, person i for the test option 5 i % 9
+                   // times
     bool hostile;  // texts that would break HTML, gnuplot or a shell
     bool excluded; // a planned rule takes person 22 out, a stricter one person 1
     bool equal;    // person 22 answers "equal" in the first cell

@@ -2,9 +2,9 @@
 #include "analysis/stats/binomial_sample_size.h"
 #include "analysis/stats/chi_squared.h"
 #include "analysis/stats/cochran.h"
+#include "analysis/stats/exchange.h"
 #include "analysis/stats/fisher.h"
 #include "analysis/stats/mcnemar.h"
-#include "analysis/stats/people.h"
 #include "analysis/stats/power.h"
 #include "reference.h"
 
@@ -66,9 +66,9 @@ static size_t cochran(const double *input, double *out)
 }
 
 // `group` and `counts` have room for what the input holds.
-static struct stat_people people_of(const double *input, int *group, int64_t *counts)
+static struct stat_groups_of_people people_of(const double *input, int *group, int64_t *counts)
 {
-    struct stat_people p = {(size_t)input[0], (size_t)input[1], (size_t)input[2], group, counts};
+    struct stat_groups_of_people p = {(size_t)input[0], (size_t)input[1], (size_t)input[2], group, counts};
     for (size_t i = 0; i < p.people; i++)
         group[i] = (int)input[3 + i];
     for (size_t i = 0; i < p.people * p.categories; i++)
@@ -80,9 +80,9 @@ static size_t people(const double *input, double *out)
 {
     int group[MOST];
     int64_t counts[MOST];
-    struct stat_people p = people_of(input, group, counts);
-    struct stat_permutation exact = stat_people_test(&p, (struct stat_permuting){0}),
-                            drawn = stat_people_test(&p, (struct stat_permuting){-1, 20000, 7});
+    struct stat_groups_of_people p = people_of(input, group, counts);
+    struct stat_permutation exact = stat_exchange_test(&p, (struct stat_permuting){0}),
+                            drawn = stat_exchange_test(&p, (struct stat_permuting){-1, 20000, 7});
     assert_true(exact.exact && exact.standard_error == 0 && !drawn.exact);
     assert_true(drawn.arrangements == 20000 && drawn.statistic == exact.statistic);
     // one seed, so that this holds today and tomorrow: four standard errors of the exact p
@@ -224,9 +224,9 @@ static void repeats_are_not_people(void **state)
     int64_t often[12];
     for (int i = 0; i < 12; i++)
         often[i] = 50 * once[i];
-    struct stat_people p = {6, 2, 2, group, once}, q = {6, 2, 2, group, often};
-    struct stat_permutation a = stat_people_test(&p, (struct stat_permuting){0}),
-                            b = stat_people_test(&q, (struct stat_permuting){0});
+    struct stat_groups_of_people p = {6, 2, 2, group, once}, q = {6, 2, 2, group, often};
+    struct stat_permutation a = stat_exchange_test(&p, (struct stat_permuting){0}),
+                            b = stat_exchange_test(&q, (struct stat_permuting){0});
     assert_true(a.p_value == b.p_value && a.arrangements == 20);
     const int64_t pooled[] = {100, 50, 50, 100};
     assert_true(stat_chi_squared_test((struct stat_counts){pooled, 2, 2}).p_value < 1e-8 && b.p_value > 0.5);
@@ -288,12 +288,12 @@ static void bad_people(void **state)
     assert_true(isnan(stat_cochran_q(two + 2, 1, 2, (struct stat_permuting){-1, -1, 0}).p_value));
     const int group[2] = {0, 1}, wrong[2] = {0, 2}, one[2] = {0, 0};
     const int64_t good[4] = {1, 2, 2, 1}, negative[4] = {1, 2, -1, 2}, empty[4] = {1, 0, 2, 0};
-    const struct stat_people bad[] = {
+    const struct stat_groups_of_people bad[] = {
         {2, 2, 2, wrong, good}, {2, 2, 2, one, good},   {2, 2, 2, group, negative}, {2, 2, 2, group, empty},
         {1, 2, 2, group, good}, {2, 1, 2, group, good}, {2, 2, 1, group, good},     {2, 2, 2, group, NULL}};
     for (int i = 0; i < 8; i++)
-        assert_true(isnan(stat_people_test(&bad[i], how).p_value) &&
-                    stat_people_test(&bad[i], how).arrangements == 0);
+        assert_true(isnan(stat_exchange_test(&bad[i], how).p_value) &&
+                    stat_exchange_test(&bad[i], how).arrangements == 0);
 }
 
 int main(void)

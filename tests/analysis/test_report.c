@@ -51,12 +51,11 @@ static size_t count(const char *text, const char *part)
     return n;
 }
 
-static char *report(const struct study_desc *desc)
+// The page of s.db.
+static char *report_file(bool simulated)
 {
     unlink("r.html");
-    study_file_make("s.db", desc);
-    const char *argv[] = {fovstats, "report", "s.db", "-o", "r.html", desc->simulated ? "--simulated" : NULL,
-                          NULL};
+    const char *argv[] = {fovstats, "report", "s.db", "-o", "r.html", simulated ? "--simulated" : NULL, NULL};
     struct program_result r = program_run(argv, NULL);
     if (r.code != 0 || r.err[0])
         fail_msg("exit %d: %s", r.code, r.err);
@@ -64,6 +63,12 @@ static char *report(const struct study_desc *desc)
     char *page = slurp("r.html");
     assert_non_null(page);
     return page;
+}
+
+static char *report(const struct study_desc *desc)
+{
+    study_file_make("s.db", desc);
+    return report_file(desc->simulated);
 }
 
 // Every tag that is opened is closed, in order. Void elements of HTML are known; SVG closes its own with "/>".
@@ -278,10 +283,55 @@ static void exclusions_and_pooling_are_said(void **state)
     (void)state;
     char *page = report(&(struct study_desc){.excluded = true, .pooled = true, .equal = true});
     expect_self_contained(page);
-    assert_non_null(strstr(page, "* Pooled:"));
+    assert_non_null(strstr(page, "<strong>Pooled:</strong>"));
     assert_non_null(strstr(page, "half of the gaze was lost"));
     assert_non_null(strstr(page, "stricter (not applied)"));
     assert_non_null(strstr(page, "excluded sessions: 1"));
+    free(page);
+}
+
+// One cell of nine answers each, one of one answer each: each is tested and drawn in its way.
+static void several_answers_are_people(void **state)
+{
+    (void)state;
+    char *page = report(&(struct study_desc){.several = true});
+    expect_self_contained(page);
+    static const char *const parts[] = {"exact two-sided binomial or sign-flip test",
+                                        "Choices in cells with one answer per person were",
+                                        "In cells with several answers of a person the people",
+                                        "t interval as a line instead of a region",
+                                        "smallest attainable p",
+                                        "<td>4.8e-07</td>",
+                                        "of a person in the middle",
+                                        "Of 2 cells, 1 shows a preference (p \u2264 0.05)",
+                                        "<td>5 to 14</td>"};
+    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++)
+        if (!strstr(page, parts[i]))
+            fail_msg("the report lacks \"%s\"", parts[i]);
+    assert_null(strstr(page, "<td>6 to 16</td>")); // no null region of the other
+    free(page);
+    page = report(&(struct study_desc){0});
+    assert_null(strstr(page, "Several answers per person"));
+    free(page);
+}
+
+// Everybody always chose the same: there is a test, and neither a t interval nor a model.
+static void separation_is_said(void **state)
+{
+    (void)state;
+    study_file_make("s.db", &(struct study_desc){.several = true});
+    study_file_sql("s.db", "DELETE FROM choice WHERE trial_id < 1000; UPDATE choice SET chosen = 'a'");
+    char *page = report_file(false);
+    expect_self_contained(page);
+    assert_non_null(strstr(page, "separation: all answers are the same"));
+    assert_non_null(strstr(page, "As people answered several times per cell, the people"));
+    assert_non_null(strstr(page, "Each person answered several times in a cell; the bar is"));
+    assert_null(strstr(page, "overdispersion is not estimable there"));
+    free(page);
+    study_file_sql("s.db",
+                   "DELETE FROM choice WHERE segment_id > 4; UPDATE choice SET chosen = 'b' WHERE id % 8 = 0");
+    page = report_file(false);
+    assert_non_null(strstr(page, "with 4 people the sign-flip p is never below 0.12; it cannot reach 0.05"));
     free(page);
 }
 
@@ -370,6 +420,8 @@ int main(void)
         cmocka_unit_test(simulated_sessions_beside_people_are_left_out),
         cmocka_unit_test(hostile_texts_stay_texts),
         cmocka_unit_test(exclusions_and_pooling_are_said),
+        cmocka_unit_test(several_answers_are_people),
+        cmocka_unit_test(separation_is_said),
         cmocka_unit_test(what_is_missing_is_said),
         cmocka_unit_test(failures_write_nothing),
         cmocka_unit_test(a_figure_becomes_part_of_a_page),

@@ -307,8 +307,14 @@ static void choices_agree_with_r(void **state)
     assert_true(json_after(r.out, cells[0], "null_low") == 6 && json_after(r.out, cells[0], "null_high") == 16);
     assert_true(json_after(r.out, cells[1], "k") == 4 && json_after(r.out, cells[1], "n") == 19);
     assert_true(json_after(r.out, cells[1], "null_low") == 5 && json_after(r.out, cells[1], "null_high") == 14);
+    // Holm: the smaller p twice, and no less for the other
+    double p[] = {json_after(r.out, cells[0], "p_value"), json_after(r.out, cells[1], "p_value")};
+    assert_true(json_after(r.out, cells[1], "p_holm") == 2 * p[1] &&
+                json_after(r.out, cells[0], "p_holm") == p[0]);
     assert_true(json_after(r.out, "left_out", "not_done") == 3);
-    assert_null(strstr(r.out, "\"pooled\":true"));
+    assert_null(strstr(r.out, "\"several_answers\":true"));
+    assert_non_null(strstr(r.out, "\"overdispersion\":null"));
+    assert_null(strstr(r.out, "\"pooled\""));
     program_free(&r);
     r = FOVSTATS("choices", "s.db");
     expect_golden(r.out, "choices.txt");
@@ -320,7 +326,8 @@ static void choices_say_what_they_left_out(void **state)
     (void)state;
     study_file_make("x.db", &(struct study_desc){.excluded = true, .pooled = true});
     struct program_result r = FOVSTATS("choices", "x.db");
-    assert_non_null(strstr(r.out, "* pooled"));
+    assert_non_null(strstr(r.out, "Several answers per person: people are tested, not answers"));
+    assert_non_null(strstr(r.out, "Warning: pooled"));
     assert_non_null(strstr(r.out, "session 22 of participant P22 (excluded)"));
     assert_null(strstr(r.out, "participant P01")); // the stricter rule is not applied
     program_free(&r);
@@ -334,6 +341,85 @@ static void choices_say_what_they_left_out(void **state)
     r = FOVSTATS("choices", "e.db", "--json");
     assert_true(json_after(r.out, "\"epsilon\":0.2}", "n") == 21 &&
                 json_after(r.out, "\"epsilon\":0.2}", "equal") == 1);
+    program_free(&r);
+}
+
+// A column of people.csv's row of this study.
+static double of_people(const char *column)
+{
+    FILE *file = reference_open("people.csv");
+    char heading[1024], line[4096];
+    double value = (double)NAN;
+    assert_non_null(fgets(heading, sizeof heading, file));
+    heading[strcspn(heading, "\n")] = '\0';
+    while (fgets(line, sizeof line, file)) {
+        if (strncmp(line, "small study,", 12) != 0)
+            continue;
+        line[strcspn(line, "\n")] = '\0';
+        char *names = heading, *rest = line;
+        const char *name, *field;
+        while ((name = reference_field(&names, ',')) && (field = reference_field(&rest, ',')))
+            if (strcmp(name, column) == 0)
+                value = reference_number(field);
+        break;
+    }
+    fclose(file);
+    assert_true(!isnan(value));
+    return value;
+}
+
+static void expect_of_people(const char *json, const char *place, const char *key, const char *column,
+                             double most)
+{
+    double value = json_after(json, place, key), known = of_people(column);
+    if (!(fabs(value - known) <= most))
+        fail_msg("%s: %.17g, R %.17g", key, value, known);
+}
+
+static void several_answers_agree_with_r(void **state)
+{
+    (void)state;
+    study_file_make("v.db", &(struct study_desc){.several = true});
+    struct program_result r = FOVSTATS("choices", "v.db", "--json");
+    assert_int_equal(r.code, 0);
+    const char *cell = "\"epsilon\":0.2}";
+    assert_true(json_after(r.out, cell, "k") == 92 && json_after(r.out, cell, "n") == 198);
+    expect_of_people(r.out, cell, "p_value", "flip_two", 1e-13);
+    expect_of_people(r.out, cell, "estimate", "share", 1e-13);
+    expect_of_people(r.out, cell, "ci_low", "t_low", 1e-12);
+    expect_of_people(r.out, cell, "ci_high", "t_high", 1e-12);
+    expect_of_people(r.out, cell, "overdispersion", "dispersion", 1e-10);
+    expect_of_people(r.out, "\"sign_flip\"", "p_value", "flip_two", 1e-13);
+    expect_of_people(r.out, "\"t\":{", "p_value", "t_p", 1e-12);
+    expect_of_people(r.out, "\"mixed_model\"", "intercept", "glmer_intercept", 1e-3);
+    expect_of_people(r.out, "\"mixed_model\"", "std_error", "glmer_error", 1e-3);
+    expect_of_people(r.out, "\"mixed_model\"", "sd", "glmer_sd", 1e-3);
+    expect_of_people(r.out, "\"mixed_model\"", "log_likelihood", "loglik", 1e-6);
+    expect_of_people(r.out, "\"mixed_model\"", "population", "population", 1e-5);
+    assert_true(json_after(r.out, "\"sign_flip\"", "least_p") == ldexp(1, 1 - 22));
+    assert_non_null(strstr(r.out, "\"method\":\"sign-flip\""));
+    assert_non_null(strstr(r.out, "\"method\":\"binomial\"")); // the other cell
+    const char *keys[] = {"estimate", "t", "df", "p_value", "ci_low", "ci_high"};
+    for (int i = 0; i < 6; i++) {
+        char name[64];
+        snprintf(name, sizeof name, "contrast.%s", keys[i]);
+        expect_number(strstr(r.out, "\"contrasts\""), "\"estimate\":", keys[i], name);
+    }
+    assert_true(json_after(r.out, "\"contrasts\"", "people") == 19);
+    double pooled = json_after(r.out, "\"pooled\"", "p_value");
+    assert_true(fabs(pooled - 0.3556) < 5e-5); // binom.test(92, 198)
+    program_free(&r);
+    r = FOVSTATS("choices", "v.db");
+    expect_golden(r.out, "choices_several.txt");
+    program_free(&r);
+    r = FOVSTATS("choices", "v.db", "--p", "0.6", "--alternative", "greater", "--json");
+    assert_non_null(strstr(r.out, "\"method\":\"t\""));
+    assert_null(strstr(r.out, "\"sign_flip\""));
+    expect_of_people(r.out, cell, "p_value", "t_p6", 1e-12);
+    program_free(&r);
+    study_file_sql("v.db", "DELETE FROM choice WHERE trial_id IN (SELECT id FROM trial WHERE session_id > 5)");
+    r = FOVSTATS("choices", "v.db");
+    assert_non_null(strstr(r.out, "with 5 people the sign-flip p is never below 0.062; it cannot reach 0.05"));
     program_free(&r);
 }
 
@@ -402,14 +488,14 @@ static void frames_agree_with_r(void **state)
     program_free(&r);
 }
 
-// One person in two sessions: two answers in one cell are pooled, and ratings say how they count.
+// One person in two sessions: two answers in one cell are that person's, and ratings say how they count.
 static void repeated_people_are_said(void **state)
 {
     (void)state;
     study_file_make("p.db", &(struct study_desc){0});
     study_file_sql("p.db", "UPDATE session SET participant_id = 1 WHERE id = 2");
     struct program_result r = FOVSTATS("choices", "p.db");
-    assert_non_null(strstr(r.out, "epsilon 0.2 *"));
+    assert_non_null(strstr(r.out, "Several answers per person"));
     assert_non_null(strstr(r.out, "People with several sessions: 1;"));
     program_free(&r);
     r = FOVSTATS("ratings", "p.db");
@@ -429,7 +515,7 @@ static void files_add_up(void **state)
     assert_true(json_after(r.out, "{", "participants") == 44);
     assert_true(json_after(r.out, "\"epsilon\":0.2}", "k") == 12 &&
                 json_after(r.out, "\"epsilon\":0.2}", "n") == 44);
-    assert_null(strstr(r.out, "\"pooled\":true"));
+    assert_null(strstr(r.out, "\"several_answers\":true"));
     program_free(&r);
 }
 
@@ -444,6 +530,7 @@ int main(void)
         cmocka_unit_test(unreadable_files),
         cmocka_unit_test(reading_changes_nothing),
         cmocka_unit_test(choices_agree_with_r),
+        cmocka_unit_test(several_answers_agree_with_r),
         cmocka_unit_test(choices_say_what_they_left_out),
         cmocka_unit_test(simulated_is_said),
         cmocka_unit_test(ratings_agree_with_r),
