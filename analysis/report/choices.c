@@ -81,14 +81,17 @@ static struct stat_person *find_person(struct choice_cell *cell, size_t person)
 static bool add_answer(struct choice_cell *cell, const struct store_trial_row *row, size_t person)
 {
     struct stat_person *counts = find_person(cell, person);
-    if (!counts || !sample_grow(&cell->toggle, cell->answers, sizeof cell->toggle[0]))
+    bool toggled = strcmp(row->kind, "toggle") == 0; // there is nothing to switch in a sequential trial
+    if (!counts || (toggled && !sample_grow(&cell->toggle, cell->toggled, sizeof cell->toggle[0])))
         return false;
     if (!isnan(row->reaction_s)) {
         if (!sample_grow(&cell->reaction_s, cell->reactions, sizeof cell->reaction_s[0]))
             return false;
         cell->reaction_s[cell->reactions++] = row->reaction_s;
     }
-    cell->toggle[cell->answers++] = (double)row->toggles;
+    if (toggled)
+        cell->toggle[cell->toggled++] = (double)row->toggles;
+    cell->answers++;
     cell->equal += row->chosen == '=';
     cell->n += row->chosen != '=';
     cell->chosen += row->chosen == 't';
@@ -151,7 +154,7 @@ static int by_levels(const void *x, const void *y)
 static void finish_cell(struct choice_cell *cell, const struct choices_desc *desc)
 {
     choice_cell_test(cell, desc);
-    cell->toggles = stat_moments(cell->toggle, cell->answers);
+    cell->toggles = stat_moments(cell->toggle, cell->toggled);
     stat_sort(cell->reaction_s, cell->reactions);
     cell->reaction_median_s = stat_quantile(cell->reaction_s, cell->reactions, 0.5);
 }
@@ -162,7 +165,7 @@ static void finish_totals(struct choices *c, double *values, size_t total)
     size_t toggles = 0, reactions = 0;
     for (size_t i = 0; i < c->cell_count; i++) {
         const struct choice_cell *cell = &c->cells[i];
-        for (size_t j = 0; j < cell->answers; j++)
+        for (size_t j = 0; j < cell->toggled; j++)
             values[toggles++] = cell->toggle[j];
         for (size_t j = 0; j < cell->reactions; j++)
             values[total + reactions++] = cell->reaction_s[j];

@@ -52,14 +52,15 @@ struct choice_cell {
     struct stat_ttest t;       // of the people's shares
     double overdispersion;
     struct stat_mixed_logit mixed;
-    struct stat_moments toggles;
-    double reaction_median_s; // NaN where none was stored
+    struct stat_moments toggles; // of trials with something to switch; NaN where there is none
+    double reaction_median_s;    // NaN where none was stored
     // One entry per person with an answer, "equal" too:
     size_t people;
     size_t *person;             // index in the sample
     struct stat_person *counts; // without "equal"
     // Working arrays, one entry per answer:
     size_t answers;
+    size_t toggled;
     double *toggle, *reaction_s;
     size_t reactions;
 };
@@ -90,7 +91,7 @@ struct choices {
     struct choice_contrast *contrasts;
     int64_t answers; // in all cells, "equal" too
     int64_t chosen_first, chosen_a;
-    struct stat_moments toggles; // over all answers
+    struct stat_moments toggles; // over all such answers
     double reaction_median_s;
     // Left out, by the first reason that holds:
     int64_t not_done, excluded, no_test_slot, other_kinds;

@@ -227,7 +227,7 @@ static void toggles_table(const struct report *r)
         fputs("<tr>", out);
         html_cell(out, "th scope=\"row\" class=\"word\"", "%s", words);
         html_cell(out, "td", "%zu", cell->answers);
-        html_cell(out, "td", "%.2f", cell->toggles.mean);
+        number_cell(out, cell->toggles.mean, "");
         number_cell(out, cell->toggles.sd, "");
         number_cell(out, cell->reaction_median_s, "\u00a0s");
         fputs("</tr>\n", out);
@@ -241,12 +241,13 @@ void report_toggles(const struct report *r)
     if (c->cell_count == 0)
         return;
     fputs("<h2>Toggles before answering</h2>\n<p>", r->out);
+    if (c->toggles.n)
+        html_printf(r->out, "%.2f switches before a decision (SD %.2f) over %zu answers. ", c->toggles.mean,
+                    c->toggles.sd, c->toggles.n);
     html_printf(r->out,
-                "Over all %" PRId64
-                " answers: %.2f switches before a decision (SD %.2f). The option shown first was chosen "
-                "in %" PRId64 " answers (%.0f\u00a0%%), the one in slot a in %" PRId64 " (%.0f\u00a0%%).",
-                c->answers, c->toggles.mean, c->toggles.sd, c->chosen_first,
-                100 * (double)c->chosen_first / (double)c->answers, c->chosen_a,
+                "Over all %" PRId64 " answers: the option shown first was chosen "
+                "in %" PRId64 " (%.0f\u00a0%%), the one in slot a in %" PRId64 " (%.0f\u00a0%%).",
+                c->answers, c->chosen_first, 100 * (double)c->chosen_first / (double)c->answers, c->chosen_a,
                 100 * (double)c->chosen_a / (double)c->answers);
     fputs("</p>\n", r->out);
     toggles_table(r);

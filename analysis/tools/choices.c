@@ -49,6 +49,14 @@ static void print_notes(const struct sample *sample, const struct choices *c)
         printf("Left out, answers to trials without a test option: %" PRId64 ".\n", c->no_test_slot);
 }
 
+static void number_cell(struct table *t, double value)
+{
+    if (isnan(value))
+        table_cell(t, "-");
+    else
+        table_cell(t, "%.2f", value);
+}
+
 static void cell_row(struct table *t, const struct choice_cell *cell)
 {
     const struct stat_region *region = &cell->binomial.null_region;
@@ -66,9 +74,9 @@ static void cell_row(struct table *t, const struct choice_cell *cell)
         table_cell(t, "%" PRId64 " to %" PRId64, region->low, region->high);
     else
         table_cell(t, "-");
-    table_cell(t, "%.2f", cell->toggles.mean);
-    table_cell(t, "%.2f", cell->toggles.sd);
-    table_cell(t, "%.2f", cell->reaction_median_s);
+    number_cell(t, cell->toggles.mean);
+    number_cell(t, cell->toggles.sd);
+    number_cell(t, cell->reaction_median_s);
 }
 
 static bool print_text(const struct sample *sample, const struct choices *c)
@@ -89,9 +97,10 @@ static bool print_text(const struct sample *sample, const struct choices *c)
     table_finish(&t);
     printf(
         "\nchosen: answers for the test option, tested against %g, %s; Holm p: adjusted for %zu %s; reaction: "
-        "median.\nToggles over all answers: M %.2f, SD %.2f.\n",
-        c->p0, alternatives[c->alternative], c->tested, c->tested == 1 ? "cell" : "cells", c->toggles.mean,
-        c->toggles.sd);
+        "median.\n",
+        c->p0, alternatives[c->alternative], c->tested, c->tested == 1 ? "cell" : "cells");
+    if (c->toggles.n)
+        printf("Toggles over all answers: M %.2f, SD %.2f.\n", c->toggles.mean, c->toggles.sd);
     for (size_t i = 0; equal && i < c->cell_count; i++)
         if (c->cells[i].equal)
             printf("%s: %" PRId64 " answers \"equal\" are not part of n.\n", c->cells[i].label,

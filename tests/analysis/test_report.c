@@ -265,6 +265,26 @@ static void one_protocol_is_reported(void **state)
     free(page);
 }
 
+static void nothing_is_switched_in_sequential_trials(void **state)
+{
+    (void)state;
+    study_file_make("s.db", &(struct study_desc){.simulated = false});
+    study_file_sql("s.db", "UPDATE trial SET kind = 'sequential' WHERE kind = 'toggle'");
+    const char *argv[] = {fovstats, "report", "s.db", "-o", "r.html", NULL};
+    struct program_result r = program_run(argv, NULL);
+    assert_int_equal(r.code, 0);
+    program_free(&r);
+    char *page = slurp("r.html");
+    assert_null(strstr(page, "switches before a decision"));
+    assert_non_null(strstr(page, "the option shown first was chosen in"));
+    free(page);
+    const char *choices[] = {fovstats, "choices", "s.db", NULL};
+    r = program_run(choices, NULL);
+    assert_null(strstr(r.out, "Toggles over all answers"));
+    assert_null(strstr(r.out, "nan"));
+    program_free(&r);
+}
+
 static void hostile_texts_stay_texts(void **state)
 {
     (void)state;
@@ -417,6 +437,7 @@ int main(void)
         cmocka_unit_test(simulated_is_branded),
         cmocka_unit_test(every_planned_analysis_is_named),
         cmocka_unit_test(one_protocol_is_reported),
+        cmocka_unit_test(nothing_is_switched_in_sequential_trials),
         cmocka_unit_test(simulated_sessions_beside_people_are_left_out),
         cmocka_unit_test(hostile_texts_stay_texts),
         cmocka_unit_test(exclusions_and_pooling_are_said),
