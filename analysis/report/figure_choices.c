@@ -9,6 +9,7 @@
 #include <string.h>
 
 enum { CROWDED = 18 }; // bars beyond which numbers in them no longer fit
+enum { FONT_PX = 15, NARROW_FONT_PX = 12 };
 
 static const double group_gap = 0.5; // in bar slots
 
@@ -30,8 +31,8 @@ static void write_range(FILE *data, bool any, double low, double high)
         fputs("NaN NaN ", data);
 }
 
-// Columns: place, percent, null region, interval, three words.
-static void write_bar(FILE *data, const struct choice_cell *cell, size_t index, double x, bool narrow)
+// Columns: place, percent, null region, interval, three words: the last is the number, where there is one.
+static void write_bar(FILE *data, const struct choice_cell *cell, size_t number, double x, bool narrow)
 {
     const struct stat_region *region = &cell->binomial.null_region;
     double n = (double)cell->n;
@@ -45,12 +46,11 @@ static void write_bar(FILE *data, const struct choice_cell *cell, size_t index, 
     snprintf(word, sizeof word, "%" PRId64 "/%" PRId64, cell->chosen, cell->n);
     fputc(' ', data);
     figure_word(data, word);
-    if (cell->level_count) {
-        const struct choice_level *last = &cell->levels[cell->level_count - 1];
-        level_words(last->factor, last->value, !narrow, word);
-    } else {
-        snprintf(word, sizeof word, "%zu", index + 1);
-    }
+    if (number)
+        snprintf(word, sizeof word, "%zu", number);
+    else
+        level_words(cell->levels[cell->level_count - 1].factor, cell->levels[cell->level_count - 1].value,
+                    !narrow, word);
     fputc(' ', data);
     figure_word(data, word);
     fputc('\n', data);
@@ -70,22 +70,53 @@ static bool same_group(const struct choice_cell *a, const struct choice_cell *b)
     return strcmp(a->block, b->block) == 0 && strcmp(x, y) == 0;
 }
 
+// Whether words of so many letters, about 0.55 of the font's size wide each, fit.
+static bool fits(const char *words, double px)
+{
+    return 0.55 * FONT_PX * (double)strlen(words) <= px;
+}
+
+bool figure_choices_numbered(const struct choices *c)
+{
+    double slots = 0.2;
+    for (size_t i = 0; i < c->cell_count; i++)
+        slots += i && !same_group(&c->cells[i - 1], &c->cells[i]) ? 1 + group_gap : 1;
+    double slot_px = 0.93 * FIGURE_WIDE_PX / slots, group_px = 0;
+    bool numbered = false;
+    for (size_t i = 0; i < c->cell_count && !numbered; i++) {
+        const struct choice_cell *cell = &c->cells[i];
+        char word[96], name[256];
+        numbered = cell->level_count == 0;
+        if (numbered)
+            break;
+        const struct choice_level *last = &cell->levels[cell->level_count - 1];
+        level_words(last->factor, last->value, true, word);
+        group_name(cell, name);
+        group_px += slot_px;
+        bool ends = i + 1 == c->cell_count || !same_group(cell, &c->cells[i + 1]);
+        numbered = !fits(word, 1.1 * slot_px) || (ends && !fits(name, group_px + group_gap * slot_px));
+        group_px = ends ? 0 : group_px;
+    }
+    return numbered;
+}
+
 // Returns where the last bar stands; bars are block 0 of the data file, groups block 1.
 static double write_data(FILE *data, const struct choices *c, bool narrow)
 {
+    const bool numbered = figure_choices_numbered(c);
     double x = 0;
     for (size_t i = 0; i < c->cell_count; i++) {
         if (i)
             x += same_group(&c->cells[i - 1], &c->cells[i]) ? 1 : 1 + group_gap;
         if (c->cells[i].n) // a cell of nothing but "equal" has no percent
-            write_bar(data, &c->cells[i], i, x, narrow);
+            write_bar(data, &c->cells[i], numbered ? i + 1 : 0, x, narrow);
     }
     fputs("\n\n", data);
     double last = x, start = 0;
     x = 0;
     for (size_t i = 0; i < c->cell_count; i++) {
         bool ends = i + 1 == c->cell_count || !same_group(&c->cells[i], &c->cells[i + 1]);
-        if (ends) {
+        if (ends && !numbered) {
             char name[256];
             group_name(&c->cells[i], name);
             fprintf(data, "%.3f ", (start + x) / 2);
@@ -102,7 +133,7 @@ bool figure_choices(const struct choices *choices, const struct figure_desc *des
                     size_t error_size)
 {
     struct figure figure;
-    int font = desc->narrow ? 12 : 15;
+    int font = desc->narrow ? NARROW_FONT_PX : FONT_PX;
     if (!figure_begin(&figure, desc->narrow ? FIGURE_NARROW_PX : FIGURE_WIDE_PX, desc->narrow ? 330 : 430, font,
                       error, error_size))
         return false;
@@ -122,10 +153,10 @@ bool figure_choices(const struct choices *choices, const struct figure_desc *des
             "plot %s'data' index 0 using 1:2:(0.6) with boxes fs solid noborder fc rgb '" FIGURE_ORANGE "'%s%s",
             choices->one_each ? regions : "", choices->one_each ? region_edges : "",
             choices->several ? intervals : "");
-    fprintf(figure.script,
-            ", '' index 0 using 1:(-5):9 with labels tc rgb '" FIGURE_INK "'"
-            ", '' index 1 using 1:(-14):2 with labels font ',%d' tc rgb '" FIGURE_INK "'",
-            font + 1);
+    fprintf(figure.script, ", '' index 0 using 1:(-5):9 with labels tc rgb '" FIGURE_INK "'");
+    if (!figure_choices_numbered(choices))
+        fprintf(figure.script, ", '' index 1 using 1:(-14):2 with labels font ',%d' tc rgb '" FIGURE_INK "'",
+                font + 1);
     if (numbers)
         fprintf(figure.script,
                 ", '' index 0 using 1:(%s):7 with labels tc rgb '" FIGURE_INK "'"

@@ -23,6 +23,8 @@ struct figure_desc {
 // cell, its interval is drawn instead.
 bool figure_choices(const struct choices *choices, const struct figure_desc *desc, char **out_svg, char *error,
                     size_t error_size);
+// Whether the bars bear numbers, those of the table's rows: words are missing, or do not fit.
+bool figure_choices_numbered(const struct choices *choices);
 
 // Each person's two ratings as a line, in two panels by what came first, with the means.
 bool figure_ratings(const struct sample *sample, const struct rating_question *question,

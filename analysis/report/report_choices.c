@@ -1,4 +1,5 @@
 // Summary, choices and toggles.
+#include "analysis/report/figures.h"
 #include "analysis/report/html.h"
 #include "analysis/report/level.h"
 #include "analysis/report/sections.h"
@@ -90,7 +91,8 @@ static void choices_caption(const struct report *r, char *out, size_t size)
         "<span class=\"key\" style=\"background:#e8912d\"></span> Percent of choices for the test option. %s%s"
         "Dashed: 50&nbsp;%%. In the bars: percent, and answers for the test option of all answers.%s",
         region, interval,
-        r->choices.cells[0].level_count ? "" : " Numbers under the bars are those of the table\u2019s rows.");
+        !figure_choices_numbered(&r->choices) ? ""
+                                              : " Numbers under the bars are those of the table\u2019s rows.");
 }
 
 static void choice_row(const struct report *r, const struct choice_cell *cell, size_t index)
@@ -102,7 +104,7 @@ static void choice_row(const struct report *r, const struct choice_cell *cell, s
     html_p_value(p, cell->p_value);
     html_p_value(holm, cell->holm);
     fprintf(out, "<tr%s>", report_outside(cell) ? " class=\"outside\"" : "");
-    if (!cell->level_count)
+    if (figure_choices_numbered(&r->choices))
         html_cell(out, "td", "%zu", index + 1);
     html_cell(out, "th scope=\"row\" class=\"word\"", "%s", words);
     html_cell(out, "td", "%" PRId64, cell->chosen);
@@ -137,7 +139,7 @@ static void choices_table(const struct report *r)
 {
     FILE *out = r->out;
     const struct choices *c = &r->choices;
-    bool numbered = c->cells[0].level_count == 0;
+    bool numbered = figure_choices_numbered(c);
     fprintf(out,
             "<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"Choices per "
             "cell\"><table>\n<caption>Choices per cell, %s against 50&nbsp;%%</caption>\n<thead><tr>",
