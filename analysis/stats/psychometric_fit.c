@@ -32,7 +32,7 @@ const char *stat_fit_reason(enum stat_fit_status status)
         "the level has no effect on the answers",
         "the answers jump from one level to the next, so the slope has no upper limit",
         "the threshold lies beyond the levels",
-        "the interval of the threshold does not close within one range of levels beyond them",
+        "its interval does not close near the levels",
     };
     return reasons[status];
 }
