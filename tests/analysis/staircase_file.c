@@ -69,6 +69,29 @@ static void add_steps(struct writing *w)
           w->sql);
 }
 
+static void add_choice(struct writing *w, int person, const char *block, int level, bool test, bool preference)
+{
+    char factors[32];
+    snprintf(factors, sizeof factors, "{\"dose\":%d}", level);
+    add_trial(w, person, block, "toggle", factors, 100 + level, "done");
+    fprintf(w->sql, "INSERT INTO choice VALUES(NULL, %d, %d, '%s', %s, 500000000, 5, 1);\n", w->trial, person,
+            test ? "a" : "b",
+            preference ? "NULL"
+            : test     ? "0"
+                       : "1");
+}
+
+static void add_levels(struct writing *w)
+{
+    static const int chosen[] = {4, 5, 8, 12, 15, 16, 15}, right[] = {10, 11, 14, 17, 19, 18, 19};
+    for (int level = 1; level <= 7; level++)
+        for (int i = 0; i < 20; i++) {
+            int place = (i + 3 * level) % 20; // not the same people every time
+            add_choice(w, i < 4 ? i + 1 : i + 2, "liked", level, place < chosen[level - 1], true);
+            add_choice(w, 1, "again", level, i >= right[level - 1], false);
+        }
+}
+
 void staircase_file_make(const char *path)
 {
     char *text = NULL;
@@ -82,6 +105,7 @@ void staircase_file_make(const char *path)
                 "INSERT INTO condition VALUES(%d, 'time_warped', '{\"epsilon\":0.25,\"fovea_deg\":%d}');\n",
                 100 + level, level);
     add_steps(w);
+    add_levels(w);
     for (int i = 0; i < 2; i++) {
         add_trial(w, 1, "graded", "staircase", "{}", 101 + i, "done");
         fprintf(w->sql, "INSERT INTO staircase_step VALUES(NULL, %d, %d, %d, 0, 1.5);\n", w->trial, i + 1,

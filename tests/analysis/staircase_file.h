@@ -8,7 +8,10 @@
 //   P04  6 steps, of which one is invalid and one is excluded
 //   P05  6 steps of a session that is excluded
 // Block 'graded': P01 answers 2 steps on a scale. Block 'practice': one step that counts for nothing.
-// Block 'tune', ε: P01 set 0.1 and 0.3, P02 0.4, P03 0.6, 0.8 and 1; and P04 2, in an invalid trial.
+// Block 'liked': at each level 1 to 7 of dose 4, 5, 8, 12, 15, 16 and 15 of 20 people chose the test option,
+// the set "preference" of psychometric.csv; each person once. Block 'again': P01 answers as in 'stairs', at
+// levels of dose. Block 'tune', ε: P01 set 0.1 and 0.3, P02 0.4, P03 0.6, 0.8 and 1; and P04 2, in an invalid
+// trial.
 void staircase_file_make(const char *path);
 
 #endif
