@@ -44,7 +44,7 @@ static void fit_person(struct threshold_person *person, const struct threshold_c
     person->fit = stat_psychometric_fit(person->steps, count, &desc);
     person->bootstrap =
         stat_psychometric_bootstrap(person->steps, count, &desc, &person->fit, o->replicates, o->seed);
-    person->bayes = stat_psychometric_bayes(person->steps, o->bayes ? count : 0, &desc);
+    person->bayes = stat_psychometric_bayes(person->steps, o->bayes && !cell->undirected ? count : 0, &desc);
 }
 
 static bool fit_cell(struct threshold_cell *cell, const struct threshold_options *o)

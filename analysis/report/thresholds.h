@@ -19,7 +19,8 @@
 // of constant levels has one function for all, its answers at one level from different people. Means are over
 // those who have an estimate; how many have none is counted, and whoever prints a mean must print that too.
 // Answers on a scale, and blocks that take "equal", have the staircase's own estimate only. Which way the
-// function goes is what staircases did after a wrong answer (they make it easier), unless the options say it.
+// function goes is what staircases did after a wrong answer (they make it easier) or, without any, after right
+// ones, unless the options say it.
 #ifndef ANALYSIS_REPORT_THRESHOLDS_H
 #define ANALYSIS_REPORT_THRESHOLDS_H
 
@@ -70,7 +71,8 @@ struct threshold_cell {
     const char *words;           // the same for people
     const char *parameter;       // what the levels are of; "level" where nothing tells
     bool quest, graded, falling;
-    size_t steps; // of all people, used
+    bool undirected; // nothing tells which way the function goes: no fit by Bayes' rule, which would need it
+    size_t steps;    // of all people, used
     size_t person_count;
     struct threshold_person *people; // in the sample's order
     struct threshold_mean by_staircase, by_fit, by_bayes;

@@ -18,9 +18,10 @@ static struct threshold_cell *find_cell(struct filling *f, const struct store_tr
                                         const char *factor)
 {
     struct thresholds *t = f->thresholds;
-    const char *label = threshold_label(f->sample, row->factors, factor, false);
+    char label[512];
     bool preference = row->correct < 0;
-    for (size_t i = f->first; label && i < t->cell_count; i++) {
+    threshold_label_text(f->sample, row->factors, factor, false, label);
+    for (size_t i = f->first; i < t->cell_count; i++) {
         struct threshold_cell *cell = &t->cells[i];
         if (cell->preference == preference && strcmp(cell->block, row->block) == 0 &&
             strcmp(cell->parameter, factor) == 0 && strcmp(cell->label, label) == 0)
@@ -29,11 +30,11 @@ static struct threshold_cell *find_cell(struct filling *f, const struct store_tr
     struct threshold_cell cell = {.source = THRESHOLD_LEVELS,
                                   .preference = preference,
                                   .block = sample_keep(f->sample, row->block),
-                                  .factors = label,
-                                  .label = label,
+                                  .label = sample_keep(f->sample, label),
                                   .words = threshold_label(f->sample, row->factors, factor, true),
                                   .parameter = factor};
-    if (!label || !cell.block || !cell.words || !sample_grow(&t->cells, t->cell_count, sizeof t->cells[0]))
+    cell.factors = cell.label;
+    if (!cell.label || !cell.block || !cell.words || !sample_grow(&t->cells, t->cell_count, sizeof t->cells[0]))
         return NULL;
     t->cells[t->cell_count] = cell;
     return &t->cells[t->cell_count++];
@@ -105,7 +106,8 @@ static bool pool(struct threshold_cell *cell)
     return true;
 }
 
-static bool goes_down(const struct threshold_cell *cell)
+// Covariance of answer and level, times their number.
+static double together(const struct threshold_cell *cell)
 {
     double n = 0, level = 0, yes = 0, both = 0, first = cell->people[0].steps[0].level;
     for (size_t i = 0; i < cell->person_count; i++)
@@ -116,7 +118,7 @@ static bool goes_down(const struct threshold_cell *cell)
             yes += k;
             both += x * k;
         }
-    return both - level * yes / n < 0;
+    return both - level * yes / n;
 }
 
 // False where memory ran out; *out_keep: whether the cell has levels enough.
@@ -137,7 +139,8 @@ static bool finish_cell(struct threshold_cell *cell, enum threshold_larger large
     *out_keep = most >= (cell->preference ? LEAST_PREFERENCE : LEAST_RIGHT);
     for (size_t i = 0; i < cell->person_count; i++)
         cell->people[i].estimate = (double)NAN; // there is no staircase
-    cell->falling = larger == THRESHOLD_AS_SHOWN ? goes_down(cell) : larger == THRESHOLD_HARDER;
+    cell->undirected = larger == THRESHOLD_AS_SHOWN && together(cell) == 0;
+    cell->falling = larger == THRESHOLD_AS_SHOWN ? together(cell) < 0 : larger == THRESHOLD_HARDER;
     return true;
 }
 

@@ -10,6 +10,7 @@
 // What is known of a cell while its rows arrive.
 struct vote {
     int64_t easier;      // how often a wrong answer raised the level, less how often it lowered it
+    int64_t harder;      // the same of right answers
     uint32_t parameters; // bit i: the i-th parameter of the test option had every level so far
     const char *name;    // of the first that had
     bool any;
@@ -27,9 +28,10 @@ struct filling {
     int64_t outcome;
 };
 
-const char *threshold_label(struct sample *sample, const char *factors, const char *without, bool words)
+void threshold_label_text(const struct sample *sample, const char *factors, const char *without, bool words,
+                          char label[512])
 {
-    char label[512] = "";
+    label[0] = '\0';
     for (size_t i = 0; i < sample->factor_count; i++) {
         const struct sample_factor *f = &sample->factors[i];
         if (strcmp(f->factors, factors) != 0 || (without && strcmp(f->key, without) == 0))
@@ -38,11 +40,19 @@ const char *threshold_label(struct sample *sample, const char *factors, const ch
         char level[96];
         level_words(f->key, f->value, true, level);
         if (words)
-            snprintf(label + used, sizeof label - used, "%s%s", used ? ", " : "", level);
+            snprintf(label + used, 512 - used, "%s%s", used ? ", " : "", level);
         else
-            snprintf(label + used, sizeof label - used, "%s%s %s", used ? ", " : "", f->key, f->value);
+            snprintf(label + used, 512 - used, "%s%s %s", used ? ", " : "", f->key, f->value);
     }
-    return sample_keep(sample, label[0] ? label : "all");
+    if (!label[0])
+        snprintf(label, 512, "all");
+}
+
+const char *threshold_label(struct sample *sample, const char *factors, const char *without, bool words)
+{
+    char label[512];
+    threshold_label_text(sample, factors, without, words, label);
+    return sample_keep(sample, label);
 }
 
 static struct threshold_cell *find_cell(struct filling *f, const struct store_step_row *row)
@@ -140,8 +150,8 @@ static bool add_step(void *user, const struct store_step_row *row)
     if (f->cell != index || f->session != session)
         open_staircase(f, index, session, person);
     struct vote *vote = &f->votes[index];
-    if (!isnan(f->level) && f->outcome == 0)
-        vote->easier += (row->level > f->level) - (row->level < f->level);
+    if (!isnan(f->level))
+        *(f->outcome == 0 ? &vote->easier : &vote->harder) += (row->level > f->level) - (row->level < f->level);
     vote_parameter(f, vote, row);
     f->level = row->level;
     f->outcome = row->outcome;
@@ -168,7 +178,9 @@ static bool add_step(void *user, const struct store_step_row *row)
 static void finish_cell(struct threshold_cell *cell, const struct vote *vote, enum threshold_larger larger)
 {
     cell->parameter = vote->name ? vote->name : "level";
-    cell->falling = larger == THRESHOLD_AS_SHOWN ? vote->easier < 0 : larger == THRESHOLD_HARDER;
+    cell->undirected = larger == THRESHOLD_AS_SHOWN && !vote->easier && !vote->harder;
+    bool shown = vote->easier ? vote->easier < 0 : vote->harder > 0;
+    cell->falling = larger == THRESHOLD_AS_SHOWN ? shown : larger == THRESHOLD_HARDER;
     for (size_t i = 0; i < cell->person_count; i++)
         if (cell->people[i].estimates == 0)
             cell->people[i].estimate = (double)NAN;

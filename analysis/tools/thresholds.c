@@ -170,7 +170,9 @@ static bool print_means(const struct threshold_cell *cell, double conf)
 static void print_heading(const struct threshold_cell *cell)
 {
     printf("%s, %s: %s", cell->block, cell->label, cell->parameter);
-    if (cell->preference)
+    if (cell->undirected && !cell->graded)
+        printf(", nothing tells whether larger is harder: no Bayes without --larger");
+    else if (cell->preference)
         printf(", the test option is chosen %s at larger levels; asymptotes guess and 1 - lapse",
                cell->falling ? "less" : "more");
     else if (!cell->graded)

@@ -102,7 +102,7 @@ static void cell_json(struct json *json, const struct sample *sample, const stru
                                                : "up_down");
     json_bool(json, "preference", cell->preference);
     json_integer(json, "people_together", (int64_t)cell->pooled);
-    json_text(json, "larger", cell->falling ? "harder" : "easier");
+    json_text(json, "larger", cell->undirected ? "unknown" : cell->falling ? "harder" : "easier");
     json_bool(json, "graded", cell->graded);
     mean_json(json, "over_people_staircase", &cell->by_staircase);
     mean_json(json, "over_people_maximum_likelihood", &cell->by_fit);

@@ -110,6 +110,41 @@ static void staircases_and_fits(void **state)
     program_free(&r);
 }
 
+// Right answers only, at constant levels: nothing tells what larger levels do, unless the user does.
+static void no_direction_no_bayes(void **state)
+{
+    (void)state;
+    staircase_file_make("s.db");
+    study_file_sql("s.db", "UPDATE choice SET correct = 1 WHERE correct = 0");
+    struct program_result r = FOVSTATS("thresholds", "s.db", "--json", "--bootstrap", "0");
+    assert_int_equal(r.code, 0);
+    const char *again = AFTER(r.out, "\"block\":\"again\"");
+    expect_text(AFTER(again, "\"reason\":"), "\"every answer is a yes");
+    expect_text(AFTER(again, "\"bayes\":{", "\"mean\":"), "null");
+    program_free(&r);
+    r = FOVSTATS("thresholds", "s.db", "--json", "--bootstrap", "0", "--larger", "harder");
+    again = AFTER(r.out, "\"block\":\"again\"");
+    assert_true(strtod(AFTER(again, "\"bayes\":{", "\"mean\":"), NULL) > 7);
+    program_free(&r);
+}
+
+// Nobody was ever wrong, and the level rose after right answers: larger is harder.
+static void direction_without_wrong_answers(void **state)
+{
+    (void)state;
+    staircase_file_make("s.db");
+    study_file_sql("s.db",
+                   "UPDATE staircase_step SET outcome = 1; UPDATE choice SET correct = 1 WHERE correct = 0");
+    struct program_result r = FOVSTATS("thresholds", "s.db", "--json", "--bootstrap", "0");
+    assert_int_equal(r.code, 0);
+    const char *cell = AFTER(r.out, "\"block\":\"stairs\"");
+    expect_text(AFTER(cell, "\"larger\":"), "\"harder\"");
+    const char *first = AFTER(cell, "\"participant\":\"P01\"");
+    expect_text(AFTER(first, "\"reason\":"), "\"every answer is a yes");
+    assert_true(strtod(AFTER(first, "\"bayes\":{", "\"mean\":"), NULL) > 7); // beyond the hardest level shown
+    program_free(&r);
+}
+
 static void constant_levels(void **state)
 {
     (void)state;
@@ -271,9 +306,10 @@ static void the_report_has_them(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(staircases_and_fits), cmocka_unit_test(constant_levels),
-        cmocka_unit_test(adjusted_values),     cmocka_unit_test(text_is_as_it_was),
-        cmocka_unit_test(options_are_heeded),  cmocka_unit_test(jod_of_a_star),
+        cmocka_unit_test(staircases_and_fits),   cmocka_unit_test(direction_without_wrong_answers),
+        cmocka_unit_test(no_direction_no_bayes), cmocka_unit_test(constant_levels),
+        cmocka_unit_test(adjusted_values),       cmocka_unit_test(text_is_as_it_was),
+        cmocka_unit_test(options_are_heeded),    cmocka_unit_test(jod_of_a_star),
         cmocka_unit_test(the_report_has_them),
     };
     return cmocka_run_group_tests(tests, enter_folder, leave_folder);
