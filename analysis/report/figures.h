@@ -3,10 +3,12 @@
 #ifndef ANALYSIS_REPORT_FIGURES_H
 #define ANALYSIS_REPORT_FIGURES_H
 
+#include "analysis/report/adjusted.h"
 #include "analysis/report/choices.h"
 #include "analysis/report/figure.h"
 #include "analysis/report/frames.h"
 #include "analysis/report/ratings.h"
+#include "analysis/report/thresholds.h"
 
 enum { FIGURE_WIDE_PX = 860, FIGURE_NARROW_PX = 360 };
 
@@ -43,6 +45,15 @@ bool figure_likert_possible(const struct factorial *factorial);
 // Median, 95th and 99th percentile of the stimulus frames' GPU time (CPU time where no GPU time is known).
 bool figure_frames(const struct sample *sample, const struct frames *frames, const struct figure_desc *desc,
                    char **out_svg, char *error, size_t error_size);
+
+// Shares of right answers by level, each person's fitted function, and the staircases' thresholds with their
+// mean. Of a cell with at least one step.
+bool figure_thresholds(const struct threshold_cell *cell, const struct figure_desc *desc, char **out_svg,
+                       char *error, size_t error_size);
+
+// Each person's adjusted value and the mean with its interval, cell by cell of one parameter.
+bool figure_adjusted(const struct adjusted_cell *const *cells, size_t count, const struct figure_desc *desc,
+                     char **out_svg, char *error, size_t error_size);
 
 // How many groups figure_frames() would draw: 0 where there is nothing to draw.
 size_t figure_frames_rows(const struct frames *frames);

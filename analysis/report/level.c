@@ -7,11 +7,11 @@
 static const char *const units[][2] = {
     {"_deg", "\u00b0"}, {"_ms", " ms"}, {"_px", " px"}, {"_hz", " Hz"}, {"_m", " m"}};
 
-void level_words(const char *factor, const char *value, bool named, char out[96])
+// The name without its unit's suffix, '_' as spaces; the unit as people write it, "" for none.
+static const char *split(const char *factor, char name[64])
 {
-    char name[64];
     const char *unit = "";
-    snprintf(name, sizeof name, "%s", strcmp(factor, "epsilon") == 0 ? "\u03b5" : factor);
+    snprintf(name, 64, "%s", strcmp(factor, "epsilon") == 0 ? "\u03b5" : factor);
     size_t length = strlen(name);
     for (size_t i = 0; i < sizeof units / sizeof units[0] && !unit[0]; i++) {
         size_t size = strlen(units[i][0]);
@@ -23,7 +23,21 @@ void level_words(const char *factor, const char *value, bool named, char out[96]
     for (char *c = name; *c; c++)
         if (*c == '_')
             *c = ' ';
+    return unit;
+}
+
+void level_words(const char *factor, const char *value, bool named, char out[96])
+{
+    char name[64];
+    const char *unit = split(factor, name);
     snprintf(out, 96, "%s%s%.20s%s", named ? name : "", named ? " " : "", value, unit);
+}
+
+void level_name(const char *factor, char out[96])
+{
+    char name[64];
+    const char *unit = split(factor, name);
+    snprintf(out, 96, unit[0] ? "%s (%s)" : "%s%s", name, unit + (unit[0] == ' '));
 }
 
 void level_join(const struct choice_cell *cell, size_t from, size_t to, char out[256])

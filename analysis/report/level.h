@@ -7,6 +7,9 @@
 // With the factor's name, or the value with its unit alone. Cut where it does not fit.
 void level_words(const char *factor, const char *value, bool named, char out[96]);
 
+// The factor's name with its unit: "fovea (°)".
+void level_name(const char *factor, char out[96]);
+
 // Levels `from` up to `to` (not included), joined by commas.
 void level_join(const struct choice_cell *cell, size_t from, size_t to, char out[256]);
 

@@ -61,6 +61,7 @@ static bool write_page(const struct report *r, char *error, size_t error_size)
     report_choices(r);
     report_toggles(r);
     report_ratings(r);
+    report_thresholds(r);
     report_checks(r);
     report_frames(r);
     if (!report_quality(r, error, error_size))
@@ -154,6 +155,46 @@ static bool draw_frames(struct report *r, char *error, size_t error_size)
     return true;
 }
 
+static bool draw_thresholds(struct report *r, char *error, size_t error_size)
+{
+    for (size_t i = 0; i < r->thresholds.cell_count && i < REPORT_STAIRCASES; i++)
+        for (int narrow = 0; narrow < 2; narrow++) {
+            char id[32];
+            snprintf(id, sizeof id, "threshold-%zu-%c", i, narrow ? 'n' : 'w');
+            struct figure_text text = {
+                id, "Right answers by level, and thresholds",
+                "Shares of right answers, fitted functions and each person's threshold; the "
+                "tables have the numbers.",
+                narrow ? "narrow" : "wide"};
+            struct figure_desc desc = {narrow, &text};
+            char **svg = narrow ? &r->threshold_figures[i].narrow : &r->threshold_figures[i].wide;
+            if (r->thresholds.cells[i].steps &&
+                !figure_thresholds(&r->thresholds.cells[i], &desc, svg, error, error_size))
+                return false;
+        }
+    return true;
+}
+
+static bool draw_adjusted(struct report *r, char *error, size_t error_size)
+{
+    const struct adjusted_cell *cells[REPORT_ADJUSTED];
+    size_t count = 0;
+    for (size_t i = 0; i < r->adjusted.cell_count && count < REPORT_ADJUSTED; i++)
+        if (strcmp(r->adjusted.cells[i].parameter, r->adjusted.cells[0].parameter) == 0)
+            cells[count++] = &r->adjusted.cells[i];
+    for (int narrow = 0; count && narrow < 2; narrow++) {
+        struct figure_text text = {
+            narrow ? "adjusted-n" : "adjusted-w", "Adjusted values",
+            "Each person's mean and the mean over people; the table below has every number.",
+            narrow ? "narrow" : "wide"};
+        struct figure_desc desc = {narrow, &text};
+        char **svg = narrow ? &r->adjusted_figure.narrow : &r->adjusted_figure.wide;
+        if (!figure_adjusted(cells, count, &desc, svg, error, error_size))
+            return false;
+    }
+    return true;
+}
+
 // --- the file ---
 
 static bool write_to(struct report *r, const char *path, const char *temporary, char *error, size_t error_size)
@@ -185,13 +226,22 @@ static bool load_tests(struct report_tests *out, struct report *r, enum sample_r
     return ok;
 }
 
+// The bootstrap is left to fovstats thresholds: it would take most of a report's time.
+static bool load_thresholds(struct report *r, char *error, size_t error_size)
+{
+    const struct threshold_options options = {.conf = r->conf, .bayes = true};
+    return thresholds_load(&r->thresholds, r->sample, &options, error, error_size) &&
+           adjusted_load(&r->adjusted, r->sample, r->conf, error, error_size) &&
+           jod_load(&r->jod, r->sample, r->conf, JOD_REPLICATES, JOD_SEED, error, error_size);
+}
+
 static bool load(struct report *r, char *error, size_t error_size)
 {
     return choices_load(&r->choices, r->sample, r->conf, error, error_size) &&
            ratings_load(&r->ratings, r->sample, r->conf, false, error, error_size) &&
            checks_load(&r->checks, r->sample, r->conf, error, error_size) &&
            frames_load(&r->frames, r->sample, error, error_size) &&
-           audit_load(&r->audit, r->sample, error, error_size) &&
+           audit_load(&r->audit, r->sample, error, error_size) && load_thresholds(r, error, error_size) &&
            (r->sample->exclusion_count == 0 ||
             (load_tests(&r->all, r, SAMPLE_ALL_DATA, error, error_size) &&
              load_tests(&r->stricter, r, SAMPLE_STRICTER, error, error_size)));
@@ -209,6 +259,12 @@ static void free_figures(struct report *r)
     free(r->choices_figure.narrow);
     free(r->frames_figure.wide);
     free(r->frames_figure.narrow);
+    free(r->adjusted_figure.wide);
+    free(r->adjusted_figure.narrow);
+    for (int i = 0; i < REPORT_STAIRCASES; i++) {
+        free(r->threshold_figures[i].wide);
+        free(r->threshold_figures[i].narrow);
+    }
     for (int i = 0; i < REPORT_QUESTIONS; i++) {
         free(r->ratings_figures[i].wide);
         free(r->ratings_figures[i].narrow);
@@ -231,13 +287,17 @@ bool report_write(struct sample *sample, double conf, const char *path, char *er
         snprintf(error, error_size, "not enough memory");
     ok = ok && load(&r, error, error_size) && draw_choices(&r, error, error_size) &&
          draw_ratings(&r, error, error_size) && draw_factorials(&r, error, error_size) &&
-         draw_frames(&r, error, error_size) && write_to(&r, path, temporary, error, error_size);
+         draw_frames(&r, error, error_size) && draw_thresholds(&r, error, error_size) &&
+         draw_adjusted(&r, error, error_size) && write_to(&r, path, temporary, error, error_size);
     free_figures(&r);
     choices_free(&r.choices);
     ratings_free(&r.ratings);
     frames_free(&r.frames);
     checks_free(&r.checks);
     audit_free(&r.audit);
+    thresholds_free(&r.thresholds);
+    adjusted_free(&r.adjusted);
+    jod_free(&r.jod);
     free_tests(&r.all);
     free_tests(&r.stricter);
     free(temporary);

@@ -2,16 +2,21 @@
 #ifndef ANALYSIS_REPORT_SECTIONS_H
 #define ANALYSIS_REPORT_SECTIONS_H
 
+#include "analysis/report/adjusted.h"
 #include "analysis/report/audit.h"
 #include "analysis/report/checks.h"
 #include "analysis/report/choices.h"
 #include "analysis/report/frames.h"
+#include "analysis/report/jod.h"
 #include "analysis/report/ratings.h"
 #include "analysis/report/sample.h"
+#include "analysis/report/thresholds.h"
 
 #include <stdio.h>
 
-enum { REPORT_QUESTIONS = 8 }; // ratings drawn; further questions are in the tables only
+enum { REPORT_QUESTIONS = 8 };  // ratings drawn; further questions are in the tables only
+enum { REPORT_STAIRCASES = 8 }; // cells drawn; further ones are in the tables only
+enum { REPORT_ADJUSTED = 8 };   // the same of adjusted values, of the first parameter
 
 struct figure_pair {
     char *wide, *narrow; // NULL where there is nothing to draw
@@ -32,9 +37,14 @@ struct report {
     struct frames frames;
     struct checks checks;
     struct audit audit;
+    struct thresholds thresholds;
+    struct adjusted adjusted;
+    struct jod jod;
     struct report_tests all, stricter; // without any exclusion; with those of the set 'stricter' too
     struct figure_pair choices_figure, frames_figure, ratings_figures[REPORT_QUESTIONS],
         factorial_figures[REPORT_QUESTIONS], likert_figures[REPORT_QUESTIONS];
+    struct figure_pair choices_figure, frames_figure, ratings_figures[REPORT_QUESTIONS];
+    struct figure_pair threshold_figures[REPORT_STAIRCASES], adjusted_figure;
 };
 
 void report_summary(const struct report *r);
@@ -53,6 +63,7 @@ void report_rank_interval(FILE *out, const struct stat_wilcoxon *rank);
 void report_rating_options(const struct report *r, const struct rating_options *q);
 void report_factorial(const struct report *r, const struct factorial *f, const struct figure_pair *means,
                       const struct figure_pair *answers);
+void report_thresholds(const struct report *r); // staircases, adjusted values, preferences on one scale
 void report_frames(const struct report *r);
 void report_checks(const struct report *r);  // null and catch trials
 void report_what_if(const struct report *r); // the same tests under other exclusions

@@ -5,14 +5,15 @@
 #include <string.h>
 
 // Adding a subcommand: its file, its declaration in command.h, its line here.
-static const struct command *const commands[] = {&command_binom,  &command_choices, &command_ratings,
-                                                 &command_frames, &command_report,  NULL};
+static const struct command *const commands[] = {
+    &command_binom, &command_choices, &command_ratings, &command_thresholds,
+    &command_jod,   &command_frames,  &command_report,  NULL};
 
 static void print_help(FILE *out)
 {
     fputs("usage: fovstats SUBCOMMAND ...   (fovstats SUBCOMMAND --help tells more)\n\n", out);
     for (int i = 0; commands[i]; i++)
-        fprintf(out, "  %-8s  %s\n", commands[i]->name, commands[i]->summary);
+        fprintf(out, "  %-10s  %s\n", commands[i]->name, commands[i]->summary);
     fputs("\nExit: 0 done, 1 the work failed, 2 wrong usage. Study files are never changed.\n", out);
 }
 
@@ -20,7 +21,8 @@ int main(int argc, char **argv)
 {
     if (argc < 2) {
         fputs(
-            "fovstats: which subcommand? One of binom, choices, ratings, frames, report; see fovstats --help\n",
+            "fovstats: which subcommand? One of binom, choices, ratings, thresholds, jod, frames, report; see "
+            "fovstats --help\n",
             stderr);
         return EXIT_USAGE;
     }

@@ -103,6 +103,27 @@ struct store_gaze_row { // one per session
     int64_t stimulus_frames, lost_frames; // of those that follow a gaze; drawn while it was lost
 };
 
+// A trial of a staircase that was answered: what was shown and what came of it.
+struct store_step_row {
+    int64_t trial_id, session_id, ordinal;
+    const char *block, *factors, *status;
+    int64_t test_id; // condition with the level in it; 0: none
+    double level;
+    int64_t outcome; // 0 wrong, 1 right; of more outcomes any from 0
+    bool reversal;
+    double estimate; // of the threshold after the step; NaN where there is none yet
+    bool graded;     // not a choice between two, one of them right: a rating, or "equal" was answered
+};
+
+// What a participant set a parameter to in the end.
+struct store_adjusted_row {
+    int64_t trial_id, session_id, ordinal;
+    const char *block, *factors, *status;
+    int64_t test_id; // the condition before it was adjusted; 0: none
+    const char *parameter;
+    double value;
+};
+
 typedef bool (*store_session_fn)(void *user, const struct store_session_row *row);
 typedef bool (*store_member_fn)(void *user, const struct store_member_row *row);
 typedef bool (*store_trial_fn)(void *user, const struct store_trial_row *row);
@@ -110,6 +131,8 @@ typedef bool (*store_rating_fn)(void *user, const struct store_rating_row *row);
 typedef bool (*store_frame_fn)(void *user, const struct store_frame_row *row);
 typedef bool (*store_exclusion_fn)(void *user, const struct store_exclusion_row *row);
 typedef bool (*store_gaze_fn)(void *user, const struct store_gaze_row *row);
+typedef bool (*store_step_fn)(void *user, const struct store_step_row *row);
+typedef bool (*store_adjusted_fn)(void *user, const struct store_adjusted_row *row);
 
 bool store_read_sessions(struct store_reader *reader, store_session_fn each, void *user);
 bool store_read_factors(struct store_reader *reader, store_member_fn each, void *user); // distinct ones
@@ -121,5 +144,9 @@ bool store_read_ratings(struct store_reader *reader, store_rating_fn each, void 
 bool store_read_frames(struct store_reader *reader, store_frame_fn each, void *user);
 bool store_read_exclusions(struct store_reader *reader, store_exclusion_fn each, void *user);
 bool store_read_gaze_counts(struct store_reader *reader, store_gaze_fn each, void *user);
+// Steps of main trials, by session, block, factors and ordinal: staircase after staircase.
+bool store_read_staircase_steps(struct store_reader *reader, store_step_fn each, void *user);
+// Of main adjust trials, by session and ordinal.
+bool store_read_adjusted(struct store_reader *reader, store_adjusted_fn each, void *user);
 
 #endif

@@ -16,6 +16,8 @@ struct call {
     store_frame_fn frame;
     store_exclusion_fn exclusion;
     store_gaze_fn gaze;
+    store_step_fn step;
+    store_adjusted_fn adjusted;
 };
 
 typedef bool (*row_fn)(sqlite3_stmt *statement, const struct call *call);
@@ -290,4 +292,57 @@ bool store_read_gaze_counts(struct store_reader *reader, store_gaze_fn each, voi
         "  WHERE phase = 'stimulus' AND fovea_source IN ('gaze', 'lost') GROUP BY session_id) f"
         " ON f.session_id = g.session_id ORDER BY g.session_id";
     return read_rows(reader, sql, gaze_row, &(struct call){.user = user, .gaze = each});
+}
+
+static bool step_row(sqlite3_stmt *s, const struct call *call)
+{
+    struct store_step_row row = {.trial_id = sqlite3_column_int64(s, 0),
+                                 .session_id = sqlite3_column_int64(s, 1),
+                                 .ordinal = sqlite3_column_int64(s, 2),
+                                 .block = text(s, 3),
+                                 .factors = text(s, 4),
+                                 .status = text(s, 5),
+                                 .test_id = sqlite3_column_int64(s, 6),
+                                 .level = real(s, 7),
+                                 .outcome = sqlite3_column_int64(s, 8),
+                                 .reversal = sqlite3_column_int(s, 9),
+                                 .estimate = real(s, 10),
+                                 .graded = sqlite3_column_int(s, 11)};
+    return call->step(call->user, &row);
+}
+
+bool store_read_staircase_steps(struct store_reader *reader, store_step_fn each, void *user)
+{
+    static const char sql[] =
+        "SELECT t.id, t.session_id, t.ordinal, t.block, t.factors, t.status,"
+        " CASE t.test_slot WHEN 'a' THEN t.option_a WHEN 'b' THEN t.option_b END, s.level, s.outcome, "
+        "s.reversal,"
+        " s.estimate, c.id IS NULL OR c.chosen = 'equal' OR c.correct IS NULL OR s.outcome > 1"
+        " FROM staircase_step s JOIN trial t ON t.id = s.trial_id LEFT JOIN choice c ON c.trial_id = t.id"
+        " WHERE t.kind = 'staircase' ORDER BY t.session_id, t.block, t.factors, t.ordinal, s.id";
+    return read_rows(reader, sql, step_row, &(struct call){.user = user, .step = each});
+}
+
+static bool adjusted_row(sqlite3_stmt *s, const struct call *call)
+{
+    struct store_adjusted_row row = {.trial_id = sqlite3_column_int64(s, 0),
+                                     .session_id = sqlite3_column_int64(s, 1),
+                                     .ordinal = sqlite3_column_int64(s, 2),
+                                     .block = text(s, 3),
+                                     .factors = text(s, 4),
+                                     .status = text(s, 5),
+                                     .test_id = sqlite3_column_int64(s, 6),
+                                     .parameter = text(s, 7),
+                                     .value = real(s, 8)};
+    return call->adjusted(call->user, &row);
+}
+
+bool store_read_adjusted(struct store_reader *reader, store_adjusted_fn each, void *user)
+{
+    static const char sql[] =
+        "SELECT t.id, t.session_id, t.ordinal, t.block, t.factors, t.status,"
+        " CASE t.test_slot WHEN 'a' THEN t.option_a WHEN 'b' THEN t.option_b END, r.question, r.value"
+        " FROM response r JOIN trial t ON t.id = r.trial_id"
+        " WHERE t.kind = 'adjust' ORDER BY t.session_id, t.ordinal, r.id";
+    return read_rows(reader, sql, adjusted_row, &(struct call){.user = user, .adjusted = each});
 }

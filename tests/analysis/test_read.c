@@ -1,5 +1,6 @@
 // Reading study files: slots become test and reference, unknown values stay unknown, a file that is being
 // written is read as it was.
+#include "staircase_file.h"
 #include "studies/store/read.h"
 #include "study_file.h"
 
@@ -162,6 +163,57 @@ static void names_that_look_like_addresses(void **state)
     unlink("a?mode=rwc#%41.db");
 }
 
+struct seen {
+    int64_t rows, graded, right, reversals, invalid;
+    double last; // estimate of the last step that had one
+};
+
+static bool see_step(void *user, const struct store_step_row *row)
+{
+    struct seen *s = user;
+    s->rows++;
+    s->graded += row->graded;
+    s->right += row->outcome == 1;
+    s->reversals += row->reversal;
+    s->invalid += strcmp(row->status, "done") != 0;
+    s->last = isnan(row->estimate) ? s->last : row->estimate;
+    assert_string_not_equal(row->block, "practice");
+    assert_true(row->test_id == 100 + (int64_t)row->level); // through the slot
+    return true;
+}
+
+static bool see_adjusted(void *user, const struct store_adjusted_row *row)
+{
+    struct seen *s = user;
+    s->rows++;
+    s->invalid += strcmp(row->status, "done") != 0;
+    s->last = row->value;
+    assert_string_equal(row->parameter, "epsilon");
+    assert_int_equal(row->test_id, 2);
+    return true;
+}
+
+static void staircases_and_adjustments(void **state)
+{
+    (void)state;
+    staircase_file_make("s.db");
+    struct store_reader *reader = open_study();
+    struct seen s = {0};
+    assert_true(store_read_staircase_steps(reader, see_step, &s));
+    assert_int_equal(s.rows, 140 + 12 + 12 + 6 + 6 + 2);
+    assert_int_equal(s.graded, 2);
+    assert_int_equal(s.right, 108 + 12 + 6 + 3 + 3);
+    assert_int_equal(s.reversals, 32 + 6 + 3 + 3);
+    assert_int_equal(s.invalid, 1);
+    assert_true(s.last == 9);
+    s = (struct seen){0};
+    assert_true(store_read_adjusted(reader, see_adjusted, &s));
+    assert_int_equal(s.rows, 7);
+    assert_int_equal(s.invalid, 1);
+    assert_true(s.last == 2);
+    store_reader_close(reader);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -170,6 +222,7 @@ int main(void)
         cmocka_unit_test(a_file_in_use),
         cmocka_unit_test(a_file_at_rest),
         cmocka_unit_test(names_that_look_like_addresses),
+        cmocka_unit_test(staircases_and_adjustments),
     };
     return cmocka_run_group_tests(tests, enter_folder, leave_folder);
 }

@@ -1,0 +1,158 @@
+#include "analysis/report/jod.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct filling {
+    struct jod *jod;
+    struct sample *sample;
+    size_t file;
+};
+
+static struct jod_block *find_block(struct filling *f, const char *name)
+{
+    struct jod *j = f->jod;
+    for (size_t i = 0; i < j->block_count; i++)
+        if (strcmp(j->blocks[i].block, name) == 0)
+            return &j->blocks[i];
+    struct jod_block block = {.block = sample_keep(f->sample, name)};
+    if (!block.block || !sample_grow(&j->blocks, j->block_count, sizeof j->blocks[0]))
+        return NULL;
+    j->blocks[j->block_count] = block;
+    return &j->blocks[j->block_count++];
+}
+
+// SAMPLE_NONE where there are more options than can be scaled.
+static size_t find_option(struct jod_block *block, size_t condition)
+{
+    for (size_t i = 0; i < block->option_count; i++)
+        if (block->options[i] == condition)
+            return i;
+    if (condition == SAMPLE_NONE || block->option_count == STAT_JOD_OPTIONS)
+        return SAMPLE_NONE;
+    block->options[block->option_count] = condition;
+    return block->option_count++;
+}
+
+// Counts what is left out; true for an answer to count.
+static bool counts(struct filling *f, const struct store_trial_row *row)
+{
+    struct jod *j = f->jod;
+    int64_t *reason = strcmp(row->status, "done") != 0                            ? &j->not_done
+                      : sample_trial_excluded(f->sample, f->file, row->id)        ? &j->excluded
+                      : row->correct >= 0                                         ? &j->correct
+                      : row->chosen == '?' || !row->test_id || !row->reference_id ? &j->no_test_slot
+                                                                                  : NULL;
+    if (reason)
+        ++*reason;
+    return !reason;
+}
+
+static bool add_trial(void *user, const struct store_trial_row *row)
+{
+    struct filling *f = user;
+    size_t session = sample_find_session(f->sample, f->file, row->session_id);
+    bool pair = strcmp(row->kind, "toggle") == 0 || strcmp(row->kind, "sequential") == 0;
+    if (row->choice_id == 0 || session == SAMPLE_NONE || !pair || !counts(f, row))
+        return true;
+    struct jod_block *block = find_block(f, row->block);
+    if (!block)
+        return false;
+    size_t test = find_option(block, sample_find_condition(f->sample, f->file, row->test_id));
+    size_t reference = find_option(block, sample_find_condition(f->sample, f->file, row->reference_id));
+    if (test == SAMPLE_NONE || reference == SAMPLE_NONE) {
+        f->jod->too_many++;
+        return true;
+    }
+    if (row->chosen == '=' || test == reference) {
+        block->equal++;
+        return true;
+    }
+    if (!sample_grow(&block->answers, block->answer_count, sizeof block->answers[0]))
+        return false;
+    block->answers[block->answer_count++] =
+        (struct stat_preference){.person = f->sample->sessions[session].person,
+                                 .winner = row->chosen == 't' ? test : reference,
+                                 .loser = row->chosen == 't' ? reference : test};
+    block->scores[reference].n++; // how often it was the reference, until the scale is made
+    return true;
+}
+
+static void set_people(struct jod_block *block)
+{
+    for (size_t i = 0; i < block->answer_count; i++) {
+        const struct stat_preference *a = &block->answers[i];
+        bool known = false;
+        for (size_t j = 0; j < i && !known; j++)
+            known = a->person == block->answers[j].person;
+        block->persons += !known;
+    }
+}
+
+static void set_order(struct jod_block *block, const struct sample *sample)
+{
+    for (size_t i = 0; i < block->option_count; i++) {
+        size_t place = i;
+        const char *label = sample->conditions[block->options[i]].label;
+        for (; place > 0; place--) {
+            size_t before = block->order[place - 1];
+            if (before == block->reference ||
+                (i != block->reference && strcmp(sample->conditions[block->options[before]].label, label) <= 0))
+                break;
+            block->order[place] = before;
+        }
+        block->order[place] = i;
+    }
+}
+
+static bool scale(struct jod_block *block, const struct sample *sample, double conf, size_t replicates,
+                  uint64_t seed)
+{
+    for (size_t i = 1; i < block->option_count; i++)
+        if (block->scores[i].n > block->scores[block->reference].n)
+            block->reference = i;
+    set_people(block);
+    set_order(block, sample);
+    return stat_jod_scale(block->answers, block->answer_count,
+                          &(struct stat_jod_desc){.options = block->option_count,
+                                                  .reference = block->reference,
+                                                  .conf = conf,
+                                                  .replicates = replicates,
+                                                  .seed = seed},
+                          block->scores);
+}
+
+bool jod_load(struct jod *out, struct sample *sample, double conf, size_t replicates, uint64_t seed,
+              char *error, size_t error_size)
+{
+    *out = (struct jod){.conf = conf, .replicates = replicates};
+    bool ok = true;
+    snprintf(error, error_size, "not enough memory");
+    for (size_t i = 0; ok && i < sample->file_count; i++) {
+        struct filling f = {out, sample, i};
+        ok = store_read_trials(sample->files[i], add_trial, &f);
+        if (!ok && store_reader_error(sample->files[i])[0])
+            snprintf(error, error_size, "%s", store_reader_error(sample->files[i]));
+    }
+    size_t kept = 0; // blocks in which something was compared
+    for (size_t i = 0; ok && i < out->block_count; i++)
+        if (out->blocks[i].answer_count > 0)
+            out->blocks[kept++] = out->blocks[i];
+    out->block_count = ok ? kept : out->block_count;
+    for (size_t i = 0; ok && i < out->block_count; i++)
+        ok = scale(&out->blocks[i], sample, conf, replicates, seed);
+    if (ok)
+        error[0] = '\0';
+    else
+        jod_free(out);
+    return ok;
+}
+
+void jod_free(struct jod *jod)
+{
+    for (size_t i = 0; i < jod->block_count; i++)
+        free(jod->blocks[i].answers);
+    free(jod->blocks);
+    *jod = (struct jod){0};
+}

@@ -1,0 +1,15 @@
+#include "analysis/stats/draw.h"
+
+static uint64_t mix(uint64_t z)
+{
+    z += UINT64_C(0x9e3779b97f4a7c15); // 2^64 over the golden ratio
+    z = (z ^ (z >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
+    z = (z ^ (z >> 27)) * UINT64_C(0x94d049bb133111eb);
+    return z ^ (z >> 31);
+}
+
+double stat_draw(uint64_t seed, uint64_t replicate, uint64_t index)
+{
+    uint64_t bits = mix(mix(mix(seed) ^ replicate) ^ index);
+    return ((double)(bits >> 11) + 0.5) * 0x1p-53;
+}

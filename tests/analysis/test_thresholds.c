@@ -1,0 +1,316 @@
+// fovstats thresholds and jod on files with known answers: numbers against R, text against a golden file.
+#include "program.h"
+#include "reference.h"
+#include "staircase_file.h"
+#include "study_file.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+static const char fovstats[] = BUILD_DIR "/bin/fovstats";
+
+#define FOVSTATS(...) program_run((const char *const[]){fovstats, __VA_ARGS__, NULL}, NULL)
+
+static int enter_folder(void **state)
+{
+    static char folder[] = "/tmp/fovstats-test-XXXXXX";
+    *state = mkdtemp(folder);
+    return *state && chdir(folder) == 0 ? 0 : -1;
+}
+
+static int leave_folder(void **state)
+{
+    const char *rm[] = {"/bin/rm", "-rf", *state, NULL};
+    struct program_result r = program_run(rm, NULL);
+    program_free(&r);
+    return 0;
+}
+
+// The place after each of the marks in turn, the last a key: its value.
+static const char *after(const char *json, const char *const *marks)
+{
+    for (; *marks; marks++) {
+        const char *at = strstr(json, *marks);
+        if (!at)
+            fail_msg("no %s in %s", *marks, json);
+        json = at + strlen(*marks);
+    }
+    return json;
+}
+
+#define AFTER(json, ...) after(json, (const char *const[]){__VA_ARGS__, NULL})
+
+static void expect(const char *value, double expected, double within)
+{
+    double got = strtod(value, NULL);
+    if (!(fabs(got - expected) <= within))
+        fail_msg("%.12g, expected %.12g, at %.60s", got, expected, value);
+}
+
+static void expect_text(const char *at, const char *text)
+{
+    if (strncmp(at, text, strlen(text)) != 0)
+        fail_msg("expected %s at %.100s", text, at);
+}
+
+static void staircases_and_fits(void **state)
+{
+    (void)state;
+    staircase_file_make("s.db");
+    struct program_result r = FOVSTATS("thresholds", "s.db", "--json");
+    if (r.code != 0)
+        fail_msg("exit %d: %s", r.code, r.err);
+    const char *cell = AFTER(r.out, "\"block\":\"stairs\"");
+    expect_text(AFTER(cell, "\"parameter\":"), "\"fovea_deg\"");
+    expect_text(AFTER(cell, "\"method\":"), "\"up_down\"");
+    expect_text(AFTER(cell, "\"larger\":"), "\"easier\"");
+    // R: t.test(c(3.5, 6, 4))
+    const char *mean = AFTER(cell, "\"over_people_staircase\":{");
+    expect(AFTER(mean, "\"n\":"), 3, 0);
+    expect(AFTER(mean, "\"mean\":"), 4.5, 1e-12);
+    expect(AFTER(mean, "\"sd\":"), 1.3228756555322954, 1e-12);
+    expect(AFTER(mean, "\"median\":"), 4, 1e-12);
+    expect(AFTER(mean, "\"ci_low\":"), 1.2137946961357857, 1e-10);
+    expect(AFTER(mean, "\"ci_high\":"), 7.7862053038642136, 1e-10);
+    // tests/reference/psychometric.csv, "lapses at the top"
+    const char *first = AFTER(cell, "\"participant\":\"P01\"");
+    expect(AFTER(first, "\"steps\":"), 140, 0);
+    expect(AFTER(first, "\"reversals\":"), 32, 0);
+    expect_text(AFTER(first, "\"estimable\":"), "true");
+    expect(AFTER(first, "\"threshold\":"), 3.1375598260723097, 6e-4);
+    expect(AFTER(first, "\"threshold_profile\":["), 2.2418407666067672, 6e-4);
+    expect(AFTER(first, "\"threshold_profile\":[", ","), 4.1432527555263485, 6e-4);
+    expect(AFTER(first, "\"deviance\":"), 0.69066182612955629, 1e-6);
+    expect(AFTER(first, "\"bootstrap\":{", "\"replicates\":"), 199, 0);
+    const char *second = AFTER(cell, "\"participant\":\"P02\""),
+               *third = AFTER(cell, "\"participant\":\"P03\"");
+    expect_text(AFTER(second, "\"estimable\":"), "false,\"reason\":\"every answer is a yes");
+    expect_text(AFTER(second, "\"threshold\":"), "null");
+    expect_text(AFTER(third, "\"reason\":"), "\"one level only\"");
+    expect_text(AFTER(third, "\"bayes\":{", "\"mean\":"), "null");
+    expect(AFTER(cell, "\"participant\":\"P04\"", "\"steps\":"), 4, 0);
+    assert_null(strstr(r.out, "\"participant\":\"P05\""));
+    assert_null(strstr(r.out, "practice"));
+    expect(AFTER(r.out, "\"left_out\":{", "\"excluded\":"), 1, 0);
+    expect(AFTER(r.out, "\"left_out\":{", "\"not_done\":"), 2, 0);
+    const char *graded = AFTER(r.out, "\"block\":\"graded\"");
+    expect_text(AFTER(graded, "\"graded\":"), "true");
+    expect_text(AFTER(graded, "\"reason\":"), "\"no answers\"");
+    expect(AFTER(graded, "\"staircase_estimate\":"), 1.5, 0);
+    program_free(&r);
+}
+
+// Right answers only, at constant levels: nothing tells what larger levels do, unless the user does.
+static void no_direction_no_bayes(void **state)
+{
+    (void)state;
+    staircase_file_make("s.db");
+    study_file_sql("s.db", "UPDATE choice SET correct = 1 WHERE correct = 0");
+    struct program_result r = FOVSTATS("thresholds", "s.db", "--json", "--bootstrap", "0");
+    assert_int_equal(r.code, 0);
+    const char *again = AFTER(r.out, "\"block\":\"again\"");
+    expect_text(AFTER(again, "\"reason\":"), "\"every answer is a yes");
+    expect_text(AFTER(again, "\"bayes\":{", "\"mean\":"), "null");
+    program_free(&r);
+    r = FOVSTATS("thresholds", "s.db", "--json", "--bootstrap", "0", "--larger", "harder");
+    again = AFTER(r.out, "\"block\":\"again\"");
+    assert_true(strtod(AFTER(again, "\"bayes\":{", "\"mean\":"), NULL) > 7);
+    program_free(&r);
+}
+
+// Nobody was ever wrong, and the level rose after right answers: larger is harder.
+static void direction_without_wrong_answers(void **state)
+{
+    (void)state;
+    staircase_file_make("s.db");
+    study_file_sql("s.db",
+                   "UPDATE staircase_step SET outcome = 1; UPDATE choice SET correct = 1 WHERE correct = 0");
+    struct program_result r = FOVSTATS("thresholds", "s.db", "--json", "--bootstrap", "0");
+    assert_int_equal(r.code, 0);
+    const char *cell = AFTER(r.out, "\"block\":\"stairs\"");
+    expect_text(AFTER(cell, "\"larger\":"), "\"harder\"");
+    const char *first = AFTER(cell, "\"participant\":\"P01\"");
+    expect_text(AFTER(first, "\"reason\":"), "\"every answer is a yes");
+    assert_true(strtod(AFTER(first, "\"bayes\":{", "\"mean\":"), NULL) > 7); // beyond the hardest level shown
+    program_free(&r);
+}
+
+static void constant_levels(void **state)
+{
+    (void)state;
+    staircase_file_make("s.db");
+    struct program_result r = FOVSTATS("thresholds", "s.db", "--json", "--bootstrap", "0");
+    assert_int_equal(r.code, 0);
+    // tests/reference/psychometric.csv, "lapses at the top" and "preference"
+    const char *again = AFTER(r.out, "\"block\":\"again\""), *liked = AFTER(r.out, "\"block\":\"liked\"");
+    expect_text(AFTER(again, "\"parameter\":"), "\"dose\"");
+    expect_text(AFTER(again, "\"preference\":"), "false");
+    expect(AFTER(again, "\"people_together\":"), 0, 0);
+    expect(AFTER(again, "\"threshold\":"), 3.1375598260723097, 6e-4);
+    expect(AFTER(again, "\"guess\":"), 0.5, 0);
+    expect_text(AFTER(liked, "\"preference\":"), "true");
+    expect_text(AFTER(liked, "\"larger\":"), "\"easier\"");
+    expect(AFTER(liked, "\"people_together\":"), 20, 0);
+    expect(AFTER(liked, "\"participant\":\"all\"", "\"steps\":"), 140, 0);
+    expect(AFTER(liked, "\"threshold\":"), 3.4097276570650115, 6e-4);
+    expect(AFTER(liked, "\"lapse\":"), 0.21797053054181484, 1e-3);
+    program_free(&r);
+    // Four levels are too few for a preference's four numbers; three are enough for right answers.
+    study_file_sql("s.db",
+                   "DELETE FROM choice WHERE trial_id IN (SELECT id FROM trial WHERE block IN ('liked', "
+                   "'again') AND factors ->> '$.dose' > 4)");
+    r = FOVSTATS("thresholds", "s.db", "--json", "--bootstrap", "0");
+    assert_non_null(strstr(r.out, "\"again\""));
+    assert_null(strstr(r.out, "\"liked\""));
+    program_free(&r);
+}
+
+static void adjusted_values(void **state)
+{
+    (void)state;
+    staircase_file_make("s.db");
+    struct program_result r = FOVSTATS("thresholds", "s.db", "--json", "--bootstrap", "0");
+    assert_int_equal(r.code, 0);
+    const char *cell = AFTER(r.out, "\"adjusted\":[");
+    // R: t.test(c(0.2, 0.4, 0.8)), the means of the people
+    expect(AFTER(cell, "\"n\":"), 3, 0);
+    expect(AFTER(cell, "\"mean\":"), 0.46666666666666667, 1e-14);
+    expect(AFTER(cell, "\"sd\":"), 0.30550504633038933, 1e-14);
+    expect(AFTER(cell, "\"median\":"), 0.4, 1e-14);
+    expect(AFTER(cell, "\"ci_low\":"), -0.29224994005268523, 1e-12);
+    expect(AFTER(cell, "\"ci_high\":"), 1.2255832733860186, 1e-12);
+    expect(AFTER(cell, "\"P03\",\"values\":"), 3, 0);
+    expect(AFTER(cell, "\"P03\"", "\"least\":"), 0.6, 1e-15);
+    program_free(&r);
+}
+
+static void text_is_as_it_was(void **state)
+{
+    (void)state;
+    char path[512];
+    static char golden[65536];
+    staircase_file_make("s.db");
+    struct program_result r = FOVSTATS("thresholds", "s.db", "--bootstrap", "0");
+    assert_int_equal(r.code, 0);
+    snprintf(path, sizeof path, "%s/tests/analysis/golden/thresholds.txt", SOURCE_DIR);
+    FILE *file = fopen(path, "r");
+    if (!file)
+        fail_msg("%s is missing; it should read:\n%s", path, r.out);
+    golden[fread(golden, 1, sizeof golden - 1, file)] = '\0';
+    fclose(file);
+    assert_string_equal(r.out, golden);
+    program_free(&r);
+}
+
+static void options_are_heeded(void **state)
+{
+    (void)state;
+    staircase_file_make("s.db");
+    struct program_result r = FOVSTATS("thresholds", "s.db", "--json", "--family", "weibull", "--larger",
+                                       "harder", "--bootstrap", "0");
+    assert_int_equal(r.code, 0);
+    expect_text(AFTER(r.out, "\"family\":"), "\"weibull\"");
+    const char *cell = AFTER(r.out, "\"block\":\"stairs\"");
+    expect_text(AFTER(cell, "\"larger\":"), "\"harder\"");
+    // answers that get better with larger levels have no threshold of that kind
+    expect_text(AFTER(cell, "\"participant\":\"P01\"", "\"reason\":"), "\"the level has no effect");
+    program_free(&r);
+    static const char *const wrong[][2] = {{"--family", "probit"},
+                                           {"--larger", "smaller"},
+                                           {"--bootstrap", "-1"},
+                                           {"--bootstrap", "x"},
+                                           {"--bootstrap", "1000000"}};
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        r = FOVSTATS("thresholds", "s.db", wrong[i][0], wrong[i][1]);
+        if (r.code != 2 || !strstr(r.err, wrong[i][0]))
+            fail_msg("exit %d: %s", r.code, r.err);
+        program_free(&r);
+    }
+    study_file_make("n.db", &(struct study_desc){0});
+    r = FOVSTATS("thresholds", "n.db");
+    assert_int_equal(r.code, 1);
+    assert_non_null(
+        strstr(r.err, "n.db: no staircase, no constant levels and no adjusted value were recorded that count"));
+    program_free(&r);
+}
+
+static void jod_of_a_star(void **state)
+{
+    (void)state;
+    study_file_make("c.db", &(struct study_desc){0});
+    struct program_result r = FOVSTATS("jod", "c.db", "--json");
+    assert_int_equal(r.code, 0);
+    // R: qnorm(6 / 22) / qnorm(0.75), qnorm(4 / 19) / qnorm(0.75)
+    expect(AFTER(r.out, "epsilon 0.2\"", "\"jod\":"), -0.89635957612028561, 1e-9);
+    expect(AFTER(r.out, "epsilon 0.05\"", "\"jod\":"), -1.1928963785237581, 1e-9);
+    expect(AFTER(r.out, "\"option\":\"regular\"", "\"jod\":"), 0, 0);
+    expect(AFTER(r.out, "epsilon 0.2\"", "\"preferred\":"), 6, 0);
+    double low = strtod(AFTER(r.out, "epsilon 0.2\"", "\"ci_low\":"), NULL),
+           high = strtod(AFTER(r.out, "epsilon 0.2\"", "\"ci_high\":"), NULL);
+    assert_true(low < -1.3 && low > -2.2 && high > -0.5 && high < 0.1); // delta method: -1.73 to -0.07
+    program_free(&r);
+    study_file_sql("c.db", "UPDATE choice SET chosen = (SELECT test_slot FROM trial WHERE id = trial_id) WHERE "
+                           "trial_id % 10 = 1");
+    r = FOVSTATS("jod", "c.db");
+    assert_int_equal(r.code, 0);
+    assert_non_null(strstr(r.out, "not estimable without a prior: always preferred"));
+    program_free(&r);
+    study_file_make("b.db", &(struct study_desc){.bare = true});
+    r = FOVSTATS("jod", "b.db");
+    assert_int_equal(r.code, 1);
+    assert_non_null(strstr(r.err, "no preference between two options"));
+    program_free(&r);
+}
+
+static void the_report_has_them(void **state)
+{
+    (void)state;
+    staircase_file_make("s.db");
+    struct program_result r = FOVSTATS("report", "s.db", "-o", "s.html");
+    if (r.code != 0)
+        fail_msg("exit %d: %s", r.code, r.err);
+    program_free(&r);
+    FILE *file = fopen("s.html", "r");
+    static char page[1 << 20];
+    page[fread(page, 1, sizeof page - 1, file)] = '\0';
+    fclose(file);
+    static const char *const parts[] = {
+        "<h2>Thresholds</h2>",
+        "Block \u201cstairs\u201d, fovea (\u00b0)",
+        "1.21 to 7.79",
+        "<td>3.14</td>",
+        "2.24 to 4.14",
+        "not estimable: every answer is a yes",
+        "one level only",
+        "\u201cliked\u201d, dose: preferences for the test option",
+        "20 people</th>",
+        "not fitted: answers on a scale",
+        "<h2>Adjusted values</h2>",
+        "-0.292 to 1.23",
+    };
+    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++)
+        if (!strstr(page, parts[i]))
+            fail_msg("the report lacks \"%s\"", parts[i]);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(staircases_and_fits),   cmocka_unit_test(direction_without_wrong_answers),
+        cmocka_unit_test(no_direction_no_bayes), cmocka_unit_test(constant_levels),
+        cmocka_unit_test(adjusted_values),       cmocka_unit_test(text_is_as_it_was),
+        cmocka_unit_test(options_are_heeded),    cmocka_unit_test(jod_of_a_star),
+        cmocka_unit_test(the_report_has_them),
+    };
+    return cmocka_run_group_tests(tests, enter_folder, leave_folder);
+}
