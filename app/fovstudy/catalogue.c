@@ -173,6 +173,33 @@ static bool ends_agree(const struct protocol_block *block, const struct mode_cho
     return ok;
 }
 
+static void add_place(struct protocol_place at, char *error, size_t error_size)
+{
+    char why[480]; // the longest sentence of a mode is far shorter
+    snprintf(why, sizeof why, "%.479s", error);
+    snprintf(error, error_size, "%u:%u: %s", at.line, at.column, why);
+}
+
+// Where a condition comes from: the option that is so as it is written, else the block that makes it so.
+static void place_condition(const struct plan *plan, uint32_t index, char *error, size_t error_size)
+{
+    const struct protocol *protocol = plan->protocol;
+    const struct plan_condition *condition = &plan->conditions[index];
+    for (uint32_t i = 0; i < protocol->option_count; i++)
+        if (protocol->options[i].mode == condition->mode_index &&
+            memcmp(protocol->options[i].values, condition->values, sizeof condition->values) == 0) {
+            add_place(protocol->option_places[i], error, error_size);
+            return;
+        }
+    uint32_t block = 0; // where no trial of this group of people has it
+    for (uint32_t i = 0; i < plan->trial_count; i++)
+        if (plan->trials[i].option[0] == (int32_t)index || plan->trials[i].option[1] == (int32_t)index)
+            block = plan->trials[i].block;
+    add_place(protocol->block_places[block], error, error_size);
+    size_t used = strlen(error);
+    snprintf(error + used, error_size - used, "; block '%s' comes to that", protocol->blocks[block].name);
+}
+
 static bool courses_agree(const struct plan *plan, char *error, size_t error_size)
 {
     bool ok = true;
@@ -183,6 +210,8 @@ static bool courses_agree(const struct plan *plan, char *error, size_t error_siz
             continue;
         ok = stage_choice(&plan->conditions[trial->option[trial->test_slot]], &choice) &&
              ends_agree(&plan->protocol->blocks[trial->block], &choice, error, error_size);
+        if (!ok)
+            add_place(plan->protocol->block_places[trial->block], error, error_size);
     }
     return ok;
 }
@@ -199,6 +228,8 @@ static bool conditions_agree(const struct protocol *protocol, char *error, size_
     for (uint32_t i = 0; i < plan->condition_count && ok; i++) {
         struct mode_choice choice;
         ok = stage_choice(&plan->conditions[i], &choice) && mode_check(&choice, error, error_size);
+        if (!ok)
+            place_condition(plan, i, error, error_size);
     }
     ok = ok && courses_agree(plan, error, error_size);
     plan_destroy(plan);
@@ -230,10 +261,12 @@ static struct protocol *checked(const char *path, struct protocol *protocol, con
                                 size_t count, char *error, size_t error_size)
 {
     char why[512];
-    if (!protocol || (conditions_agree(protocol, why, sizeof why) &&
-                      bindings_known(protocol, bound, count, why, sizeof why)))
+    if (!protocol)
+        return NULL;
+    bool agree = conditions_agree(protocol, why, sizeof why);
+    if (agree && bindings_known(protocol, bound, count, why, sizeof why))
         return protocol;
-    snprintf(error, error_size, "%s: %s", path, why);
+    snprintf(error, error_size, agree ? "%s: %s" : "%s:%s", path, why);
     protocol_destroy(protocol);
     return NULL;
 }

@@ -6,14 +6,19 @@
 #include "app/fovstudy/check_report.h"
 #include "app/fovstudy/check_scenes.h"
 #include "app/fovstudy/commands.h"
+#include "app/fovstudy/run_options.h"
 #include "studies/engine/plan.h"
 #include "studies/store/store.h"
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 enum option { PARTICIPANT, DB, NUMBER, SEED, SCENE, SCENES, COUNTS, JSON, OPTIONS };
-enum { PARTICIPANTS = 20 }; // as language.c says of a file without 'participants'
+enum {
+    PARTICIPANTS = 20, // as language.c says of a file without 'participants'
+    MANY = 5000,       // counting them takes a second or more
+};
 
 static const struct option_spec specs[OPTIONS + 1] = {
     [PARTICIPANT] = {"participant", "CODE", "the trials of this participant of --db, or of a new one"},
@@ -47,7 +52,7 @@ static int set(struct request *out, int option, const char *value)
         return -1;
     case PARTICIPANT:
         out->participant = value;
-        return -1;
+        return run_options_code("fovstudy check", value);
     case DB:
         out->database = value;
         return -1;
@@ -139,9 +144,17 @@ static char *gather_remarks(const struct request *request, const struct protocol
     return NULL;
 }
 
+// What takes long, on a terminal; NULL: nothing any more.
+static void progress(const struct check_report *report, const char *what)
+{
+    if (report->people >= MANY && isatty(STDERR_FILENO))
+        fprintf(stderr, "\r\033[K%s%s", what ? what : "", what ? " of all participants ..." : "");
+}
+
 static bool print(const struct request *request, const struct check_report *report)
 {
     char *text = request->json ? check_report_json(report) : check_report_text(report);
+    progress(report, NULL);
     if (text)
         fputs(text, stdout);
     bool done = text != NULL;
@@ -166,9 +179,12 @@ static bool examine(const struct request *request, const struct protocol *protoc
         report.remarks = remarks;
         observer_defaults(&report.pace);
         duration_of(plan, &report.pace, &report.duration);
-        done = plan_carry_over(protocol, report.seed, 0, report.people, report.carry) &&
-               check_analyses_init(&report.analyses, protocol, report.seed, report.people) &&
-               print(request, &report);
+        progress(&report, "the orders");
+        done = plan_carry_over(protocol, report.seed, 0, report.people, report.carry);
+        progress(&report, "the planned tests");
+        done = done && check_analyses_init(&report.analyses, protocol, report.seed, report.people);
+        progress(&report, "the balance");
+        done = done && print(request, &report);
         check_analyses_finish(&report.analyses);
     }
     if (!done)

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 struct checked {
@@ -37,10 +38,17 @@ static bool stand_in_check(const struct checked *c, uint32_t scene, struct camer
     return false;
 }
 
+// As scene_open takes it.
 static bool is_file(const char *spec)
 {
     const char *end = strrchr(spec, '.');
-    return end && (strcmp(end, ".gltf") == 0 || strcmp(end, ".glb") == 0);
+    return strchr(spec, '/') || (end && (strcmp(end, ".gltf") == 0 || strcmp(end, ".glb") == 0));
+}
+
+static bool is_folder(const char *path)
+{
+    struct stat about;
+    return stat(path, &about) == 0 && S_ISDIR(about.st_mode);
 }
 
 // A binding is a built-in scene or a file; of a file the path is known only once it is loaded (*out_known).
@@ -58,6 +66,10 @@ static bool binding_check(const struct checked *c, const char *name, const char 
     *out_known = load;
     if (access(spec, R_OK) != 0) {
         snprintf(c->error, c->error_size, "--scene %s: %s cannot be opened: %s", name, spec, strerror(errno));
+        return false;
+    }
+    if (is_folder(spec)) {
+        snprintf(c->error, c->error_size, "--scene %s: %s is a folder; name a .gltf or .glb file", name, spec);
         return false;
     }
     if (!load)

@@ -6,6 +6,7 @@
 
 #include <inttypes.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -95,10 +96,11 @@ static bool begin_segment(struct run *run, const struct store_session_start *sta
     return false;
 }
 
-static bool prepare(struct run *run, const struct store_session_start *start, char *error, size_t error_size)
+static bool prepare(struct run *run, const struct store_session_start *start, char **out_difference,
+                    char *error, size_t error_size)
 {
     const struct run_options *options = &run->options;
-    return resume_protocol_file(options, start, error, error_size) &&
+    return resume_protocol_file(options, start, out_difference, error, error_size) &&
            run_study_init_stored(&run->study, options, start, error, error_size) &&
            resume_attributes(run->study.protocol, options, start, error, error_size) &&
            run_rows_plan(&run->rows, run->study.protocol, start->seed, start->number, error, error_size) &&
@@ -134,7 +136,7 @@ int command_resume(int argc, char **argv)
     static const struct run empty;
     struct run run = empty;
     struct store_session_start start = {0};
-    char error[RUN_ERROR] = "", observer[RESUME_OBSERVER];
+    char error[RUN_ERROR] = "", observer[RESUME_OBSERVER], *difference = NULL;
     run.lines.file = -1;
     int status = run_options_read(&run.options, true, argc, argv);
     if (status >= 0)
@@ -145,10 +147,13 @@ int command_resume(int argc, char **argv)
         result = SESSION_COMPLETE;
     else if (status < 0 && resume_options(&run.options, &start, observer, error, sizeof error)) {
         run_options_patience(&run.options);
-        if (prepare(&run, &start, error, sizeof error))
+        if (prepare(&run, &start, &difference, error, sizeof error))
             result = go_on(&run, &start, error, sizeof error);
     }
     status = run_close(&run, result, error);
+    if (difference)
+        fputs(difference, stderr);
+    free(difference);
     store_session_start_finish(&start);
     return status;
 }

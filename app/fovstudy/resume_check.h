@@ -17,9 +17,10 @@ bool resume_attributes(const struct protocol *protocol, const struct run_options
 // The display as it opened.
 bool resume_view(const struct run_view *view, const struct store_session_start *start, char *error,
                  size_t error_size);
-// The protocol's file, where there is one to look at; prints the lines that differ.
+// The protocol's file, where there is one to look at; out_difference: the lines that differ, to print below the
+// sentence; the caller frees it. NULL: there are none.
 bool resume_protocol_file(const struct run_options *options, const struct store_session_start *start,
-                          char *error, size_t error_size);
+                          char **out_difference, char *error, size_t error_size);
 // The plan against the stored trials; fills the ids and where the session goes on.
 bool resume_plan(struct run_rows *rows, const struct store_session_start *start, char *error,
                  size_t error_size);

@@ -1,5 +1,6 @@
 // The protocol's file against the text that a session was started with.
 #include "app/fovstudy/resume_check.h"
+#include "studies/protocol/text.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -61,37 +62,40 @@ static void trim(struct span *a, struct span *b)
     *b = (struct span){y, whole ? q : line_end(q, b->end)};
 }
 
-static void print_lines(char sign, const struct span *span)
+static void add_lines(struct text *out, char sign, const struct span *span)
 {
     const char *at = span->start;
     for (int shown = 0; at < span->end; shown++) {
         const char *end = line_end(at, span->end);
         size_t length = (size_t)(end - at) - (end > at && end[-1] == '\n');
         if (shown == LINES_SHOWN) {
-            fprintf(stderr, "%c ...\n", sign);
+            text_add(out, "%c ...\n", sign);
             return;
         }
-        fprintf(stderr, "%c%.*s\n", sign, (int)length, at);
+        text_add(out, "%c%.*s\n", sign, (int)length, at);
         at = end;
     }
 }
 
-static void print_difference(const char *path, const struct store_session_start *start, const char *text,
-                             size_t size)
+// NULL: out of memory.
+static char *difference(const char *path, const struct store_session_start *start, const char *text,
+                        size_t size)
 {
+    struct text out = {0};
     struct span stored = {start->protocol_text, start->protocol_text + strlen(start->protocol_text)};
     struct span given = {text, text + size};
     trim(&stored, &given);
     unsigned line = 1;
     for (const char *c = start->protocol_text; c < stored.start; c++)
         line += *c == '\n';
-    fprintf(stderr, "--- session %" PRId64 " line %u\n+++ %s\n", start->session_id, line, path);
-    print_lines('-', &stored);
-    print_lines('+', &given);
+    text_add(&out, "--- session %" PRId64 " line %u\n+++ %s\n", start->session_id, line, path);
+    add_lines(&out, '-', &stored);
+    add_lines(&out, '+', &given);
+    return text_take(&out);
 }
 
 bool resume_protocol_file(const struct run_options *options, const struct store_session_start *start,
-                          char *error, size_t error_size)
+                          char **out_difference, char *error, size_t error_size)
 {
     const char *path = options->protocol ? options->protocol : start->protocol_file;
     // The file of a study that moved to another computer is not missed: what counts is in the study file.
@@ -105,11 +109,11 @@ bool resume_protocol_file(const struct run_options *options, const struct store_
     }
     bool same = size == strlen(start->protocol_text) && memcmp(text, start->protocol_text, size) == 0;
     if (!same) {
-        print_difference(path, start, text, size);
+        *out_difference = difference(path, start, text, size);
         snprintf(error, error_size,
                  "%s: was changed since session %" PRId64
                  " began, which can only go on as it began; put the lines "
-                 "above back, or give --protocol - to go on with the text in the study file",
+                 "below back, or give --protocol - to go on with the text in the study file",
                  path, start->session_id);
     }
     free(text);

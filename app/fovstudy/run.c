@@ -1,11 +1,26 @@
 // `fovstudy run`: joins protocol, display, renderer, gaze and store, and runs one session.
 #include "app/command/options.h"
+#include "app/fovstudy/check_scenes.h"
 #include "app/fovstudy/commands.h"
+#include "app/fovstudy/run_file.h"
 #include "app/fovstudy/run_session.h"
 
+#include <inttypes.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+
+// What is bound, or stands in, is looked at where nothing is drawn too: it names the errors and the session.
+static bool scenes_are_there(const struct run *run, char *error, size_t error_size)
+{
+    const struct run_options *options = &run->options;
+    struct text remarks = {0}; // for `check`
+    bool ok = check_scenes(options->protocol, run->study.protocol, options->scenes, options->scene_count, false,
+                           &remarks, error, error_size);
+    free(text_take(&remarks));
+    return ok;
+}
 
 static bool prepare(struct run *run, char *error, size_t error_size)
 {
@@ -19,9 +34,11 @@ static bool prepare(struct run *run, char *error, size_t error_size)
                  options->database);
         return false;
     }
-    if (!run_view_init(&run->view, options, run->study.protocol, error, error_size) ||
+    if (!scenes_are_there(run, error, error_size) ||
+        !run_view_init(&run->view, options, run->study.protocol, error, error_size) ||
         !event_lines_open(&run->lines, options->events, error, error_size) ||
-        !run_rows_open(&run->rows, options, &run->study, error, error_size))
+        !run_rows_open(&run->rows, options, &run->study, error, error_size) ||
+        (!options->new_protocol && !run_file_protocol(options, run->study.protocol, error, error_size)))
         return false;
     return run_open_gaze(run, 0, error, error_size) && run_find_errors(run, error, error_size) &&
            run_rows_create(&run->rows, options, &run->study, &run->view, error, error_size) &&
@@ -39,18 +56,42 @@ static int run_one(const struct run_options *options)
     enum session_result result = SESSION_FAILED;
     if (run_study_init(&run.study, &run.options, error, sizeof error) && prepare(&run, error, sizeof error))
         result = run_go(&run, NULL, error, sizeof error);
-    return run_close(&run, result, error);
+    int status = run_close(&run, result, error);
+    return run.study.wrong_usage ? EXIT_USAGE : status;
 }
 
-// Each as if the program had been started for it alone.
+// EXIT_DONE where those who are complete took part in this protocol; a sentence either way.
+static int pass_over(const struct run_options *options, uint64_t complete)
+{
+    struct run_study study;
+    char error[RUN_ERROR] = "";
+    bool ok = run_study_init(&study, options, error, sizeof error) &&
+              (options->new_protocol || run_file_protocol(options, study.protocol, error, sizeof error));
+    int status = ok ? EXIT_DONE : study.wrong_usage ? EXIT_USAGE : EXIT_FAILED;
+    run_study_finish(&study);
+    if (ok)
+        fprintf(stderr, "fovstudy: %" PRIu64 " of %" PRIu64 " participants are complete and passed over\n",
+                complete, options->participants);
+    else
+        fprintf(stderr, "fovstudy: %s\n", error);
+    return status;
+}
+
+// Each as if the program had been started for it alone; those who are complete stay as they are, so that the
+// same line goes on where it was stopped.
 static int run_all(struct run_options *options)
 {
-    char code[16];
-    int status = EXIT_DONE;
+    char code[RUN_CODE];
+    bool complete[RUN_PARTICIPANTS + 1] = {false};
+    uint64_t passed = options->again ? 0 : run_file_complete(options, complete);
+    int status = passed > 0 ? pass_over(options, passed) : EXIT_DONE;
+    if (status != EXIT_DONE)
+        return status;
     options->participant = code;
     for (uint64_t i = 1; i <= options->participants && status == EXIT_DONE; i++) {
-        snprintf(code, sizeof code, "S%03u", (unsigned)i);
-        status = run_one(options);
+        run_file_code(i, code);
+        if (!complete[i])
+            status = run_one(options);
     }
     if (status != EXIT_DONE)
         fprintf(stderr, "fovstudy: stopped at participant %s of %u\n", code, (unsigned)options->participants);

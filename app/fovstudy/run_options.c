@@ -3,6 +3,7 @@
 #include "app/command/options.h"
 #include "app/display/display.h"
 #include "stimuli/viewing.h"
+#include "studies/engine/observer.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -28,8 +29,9 @@ enum option {
     PREFLIGHT,
     NO_PREFLIGHT,
     PLAYBACK,
-    AGAIN,    // run only
-    PROTOCOL, // resume only
+    AGAIN,        // run only
+    NEW_PROTOCOL, // run only
+    PROTOCOL,     // resume only
     OPTIONS
 };
 
@@ -37,9 +39,11 @@ enum option {
 
 static const struct option_spec specs[OPTIONS + 1] = {
     [DB] = {"db", "FILE", "the study file; made where there is none"},
-    [PARTICIPANT] = {"participant", "CODE", "a code for the participant, never a name"},
-    [PARTICIPANTS] = {"participants", "N",
-                      "run: N simulated ones instead, one after the other: S001, S002, ..."},
+    [PARTICIPANT] = {"participant", "CODE",
+                     "a code for the participant, never a name: 1 to 32 of A-Z a-z 0-9 . _ -"},
+    [PARTICIPANTS] =
+        {"participants", "N",
+         "N simulated ones instead, one after the other: S001, S002, ...; those complete are passed over"},
     [SEED] = {"seed", "N", "instead of the protocol's seed"},
     [NUMBER] = {"number", "N", "the participant's number, from 1; else the first free one"},
     [DISPLAY] = {"display", "D", "window (default), monitor:N, headless, or none: nothing is drawn"},
@@ -58,10 +62,19 @@ static const struct option_spec specs[OPTIONS + 1] = {
                    "draw each option N frames before its block, headless too; default 1000 on a display"},
     [NO_PREFLIGHT] = {"no-preflight", NULL, "show what is too slow, to try things out (logged)"},
     [PLAYBACK] = {"playback-mb", "N", "memory for prerendered pictures, default half of what is free"},
-    [AGAIN] = {"again", NULL, "run: the participant may have an earlier session in this file"},
-    [PROTOCOL] = {"protocol", "FILE|-", "resume: this file must be the session's protocol; -: look at none"},
+    [AGAIN] = {"again", NULL, "the participant may have an earlier session in this file (logged)"},
+    [NEW_PROTOCOL] =
+        {"new-protocol", NULL,
+         "the file may hold sessions of another protocol, or of another text of this one (logged)"},
+    [PROTOCOL] = {"protocol", "FILE|-", "this file must be the session's protocol; -: look at none"},
     [OPTIONS] = {NULL, NULL, NULL},
 };
+
+// Whether `fovstudy run`, or `fovstudy resume`, takes an option of the table.
+static bool taken(bool resume, int option)
+{
+    return resume ? option != AGAIN && option != NEW_PROTOCOL && option != PARTICIPANTS : option != PROTOCOL;
+}
 
 static const char about_resume[] =
     "Goes on with a session that was interrupted: the one of that number, else the last unfinished one.\n"
@@ -164,7 +177,7 @@ static int set_word(struct run_options *out, const char *value)
 
 static int set(struct run_options *out, int option, const char *value)
 {
-    if (out->resume ? option == AGAIN || option == PARTICIPANTS : option == PROTOCOL)
+    if (!taken(out->resume, option))
         return options_wrong(command_name(out), "there is no option '--%s' here", specs[option].name);
     switch (option) {
     case OPTIONS_WORD:
@@ -174,6 +187,9 @@ static int set(struct run_options *out, int option, const char *value)
         return -1;
     case AGAIN:
         out->again = true;
+        return -1;
+    case NEW_PROTOCOL:
+        out->new_protocol = true;
         return -1;
     case DB:
         out->database = value;
@@ -221,6 +237,31 @@ void run_options_patience(struct run_options *options)
         options->patience_s = UNATTENDED_PATIENCE_S;
 }
 
+int run_options_code(const char *command, const char *code)
+{
+    size_t length = strlen(code);
+    if (length >= 1 && length <= 32 &&
+        strspn(code, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-") == length)
+        return -1;
+    return options_wrong(
+        command,
+        "'%.64s' is no code for a participant: give 1 to 32 of A-Z, a-z, 0-9, '.', '_' and '-', "
+        "and no name, since it stands in the file and its reports",
+        code);
+}
+
+// Values that need no protocol to be judged.
+static int check_values(const struct run_options *options)
+{
+    struct observer_parameters observer;
+    char error[512];
+    observer_defaults(&observer);
+    if (options->observer && !observer_parse(options->observer, &observer, error, sizeof error))
+        return options_wrong(command_name(options), "%s", error);
+    return options->resume || !options->participant ? -1
+                                                    : run_options_code("fovstudy run", options->participant);
+}
+
 static int answerable(const struct run_options *options)
 {
     bool blind = strcmp(options->display, "headless") == 0 || strcmp(options->display, "none") == 0;
@@ -240,13 +281,16 @@ static int check(struct run_options *out)
     if (out->no_preflight && out->preflight)
         return options_wrong(command_name(out), "--preflight and --no-preflight contradict each other");
     if (out->resume)
-        return -1;
+        return check_values(out);
     if (out->participants && (out->participant || out->has_number || !out->observer))
         return options_wrong("fovstudy run",
                              "--participants is for simulated ones, who have codes and numbers of "
                              "their own: give --observer sim, and no --participant or --number");
     if (!out->participants && (!out->participant || !*out->participant))
         return options_wrong("fovstudy run", "who takes part? give --participant CODE");
+    int status = check_values(out);
+    if (status >= 0)
+        return status;
     if (!out->display)
         out->display = "window";
     if (!(out->fov_deg > 0.0))
@@ -257,10 +301,16 @@ static int check(struct run_options *out)
 
 static void help(bool resume)
 {
+    struct option_spec listed[OPTIONS + 1];
+    size_t count = 0;
+    for (int i = 0; i < OPTIONS; i++)
+        if (taken(resume, i))
+            listed[count++] = specs[i];
+    listed[count] = specs[OPTIONS];
     if (resume)
-        options_help(stdout, "fovstudy resume --db FILE [SESSION] [options]", about_resume, specs);
+        options_help(stdout, "fovstudy resume --db FILE [SESSION] [options]", about_resume, listed);
     else
-        options_help(stdout, "fovstudy run PROTOCOL --db FILE --participant CODE [options]", about, specs);
+        options_help(stdout, "fovstudy run PROTOCOL --db FILE --participant CODE [options]", about, listed);
 }
 
 int run_options_read(struct run_options *out, bool resume, int argc, char **argv)

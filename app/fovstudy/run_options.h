@@ -28,6 +28,7 @@ struct run_options {
     bool has_seed, has_number;
     uint64_t preflight, playback_mb; // 0: not given
     bool unblind, again, no_preflight;
+    bool new_protocol;     // the file may hold sessions of other protocols
     uint64_t participants; // simulated ones, one after the other; 0: the one named
 };
 
@@ -36,6 +37,10 @@ struct run_options {
 int run_options_read(struct run_options *out, bool resume, int argc, char **argv);
 // Where nobody sees that a machine waits, it gives up in time to be noticed.
 void run_options_patience(struct run_options *options);
+
+// What a new participant may be called: 1 to 32 of A-Z, a-z, 0-9, '.', '_' and '-'. -1, else the exit status
+// after a sentence. Codes that files hold already are not asked.
+int run_options_code(const char *command, const char *code);
 
 // The rate of a clock that no display keeps.
 double run_step_hz(const struct run_options *options);

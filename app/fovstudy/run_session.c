@@ -95,6 +95,13 @@ static void note_options(const struct run *run)
                                                .at_ns = 0,
                                                .kind = "again",
                                                .detail = "--again: a further session was asked for"});
+    if (run->options.new_protocol)
+        store_push_event(run->rows.store,
+                         &(struct store_event){.session_id = run->rows.ids.session_id,
+                                               .segment_id = run->rows.ids.segment_id,
+                                               .at_ns = 0,
+                                               .kind = "new_protocol",
+                                               .detail = "--new-protocol: another protocol was asked for"});
     if (run->options.unblind)
         store_push_event(run->rows.store,
                          &(struct store_event){.session_id = run->rows.ids.session_id,

@@ -65,8 +65,10 @@ static bool read_attributes(struct run_study *study, const struct run_options *o
     bool seen[PROTOCOL_ATTRIBUTES] = {false};
     strcpy(study->attributes, "{");
     for (size_t i = 0; i < options->attribute_count; i++)
-        if (!add_attribute(study, options->attributes[i], seen, error, error_size))
+        if (!add_attribute(study, options->attributes[i], seen, error, error_size)) {
+            study->wrong_usage = true;
             return false;
+        }
     for (uint32_t i = 0; i < study->protocol->attribute_count && !options->observer; i++)
         if (!seen[i] && !find_out(study, &study->protocol->attributes[i], error, error_size))
             return false;

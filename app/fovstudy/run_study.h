@@ -22,6 +22,7 @@ struct run_study {
     struct protocol *protocol;
     struct observer_parameters observer;
     char attributes[RUN_JSON]; // JSON object
+    bool wrong_usage;          // what failed is a value of the command line
 };
 bool run_study_init(struct run_study *study, const struct run_options *options, char *error, size_t error_size);
 // The same for a session that a study file holds; the options are complete.

@@ -2,6 +2,7 @@
 
 #include "app/session/errors_table.h"
 #include "renderer/mode.h"
+#include "studies/protocol/text.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -46,32 +47,69 @@ static struct errors_place place_of(const struct plan *plan, const struct plan_t
     return place;
 }
 
-static bool missing(const struct plan *plan, const struct errors_place *place, int32_t condition,
-                    const char *what, char *error, size_t error_size)
+// The option as a line of the errors file has it: what is at its default is left out, but for `named` (the
+// number of parameters: none).
+static void option_spec(const struct mode_choice *choice, uint32_t named, char *out, size_t out_size)
 {
-    const char *settings = strchr(place->metric, ';');
-    snprintf(error, error_size,
-             "the study file holds no measured error of %s %s on '%s%s'%s; run one session with --display "
-             "headless first, or give --observer sim:errors=FILE",
-             plan->conditions[condition].mode, plan->conditions[condition].parameters, place->spec,
-             settings ? settings : "", what);
+    struct text text = {0};
+    char sign = ':';
+    text_add(&text, "%s", choice->mode->name);
+    for (uint32_t i = 0; i < choice->mode->parameter_count; i++) {
+        const struct mode_parameter *parameter = &choice->mode->parameters[i];
+        const double value = choice->values[i];
+        if (i != named && !(value < parameter->fallback) && !(value > parameter->fallback))
+            continue;
+        text_add(&text, "%c%s=", sign, parameter->name);
+        sign = ',';
+        if (parameter->choices)
+            text_add(&text, "%s", parameter->choices[(size_t)value]);
+        else
+            text_number(&text, value);
+    }
+    text_copy(&text, out, out_size);
+}
+
+// moving: the parameter of which two values must be known, of which `known` are; the number of parameters:
+// none.
+static bool missing(const struct errors *errors, const struct errors_place *place,
+                    const struct mode_choice *choice, uint32_t moving, uint32_t known, char *error,
+                    size_t error_size)
+{
+    char what[256] = "", spec[512];
+    const char *settings = strchr(place->metric, ';'), *file = errors->file;
+    const bool moves = moving < choice->mode->parameter_count;
+    settings = settings ? settings : "";
+    option_spec(choice, moving, spec, sizeof spec);
+    if (moves)
+        snprintf(what, sizeof what,
+                 " at two values of '%s' (it has %u), which it takes to know those between them",
+                 choice->mode->parameters[moving].name, known);
+    if (*file)
+        snprintf(
+            error, error_size,
+            "neither %s nor the study file holds the error of %s on '%s%s'%s; add %s '%s%s,ERROR,%s', ERROR "
+            "being a number from 0 to 1",
+            file, spec, place->scene, settings, what, moves ? "lines like" : "the line", place->scene, settings,
+            spec);
+    else
+        snprintf(
+            error, error_size,
+            "the study file holds no measured error of %s on '%s%s'%s; run one session with --display headless "
+            "first, or give --observer sim:errors=FILE with %s '%s%s,ERROR,%s'",
+            spec, place->spec, settings, what, moves ? "lines like" : "the line", place->scene, settings, spec);
     return false;
 }
 
 static bool enough_known(const struct errors *errors, const struct errors_place *place, int32_t condition,
                          const uint32_t *parameters, uint32_t count, char *error, size_t error_size)
 {
-    char what[256];
     const struct mode_choice choice = planned_choice(errors->plan, condition);
     for (uint32_t i = 0; i < count; i++) {
         uint32_t known = 0;
         errors_table_between(errors->table, place, &choice, parameters[i], 0.0, &known);
         if (known >= 2)
             continue;
-        snprintf(what, sizeof what,
-                 " at two values of '%s' (it has %u), which it takes to know those between them",
-                 choice.mode->parameters[parameters[i]].name, known);
-        return missing(errors->plan, place, condition, what, error, error_size);
+        return missing(errors, place, &choice, parameters[i], known, error, error_size);
     }
     return true;
 }
@@ -95,7 +133,7 @@ static bool find_slot(struct errors *errors, uint32_t index, int slot, int32_t r
         return true;
     const struct mode_choice choice = planned_choice(errors->plan, condition);
     *out = errors_table_find(errors->table, place, &choice);
-    return !isnan(*out) || missing(errors->plan, place, condition, "", error, error_size);
+    return !isnan(*out) || missing(errors, place, &choice, MODE_PARAMETERS, 0, error, error_size);
 }
 
 // The protocol's reference among the plan's conditions; -1: it is not shown.
@@ -128,6 +166,7 @@ bool errors_init(struct errors *errors, const struct plan *plan, struct store *s
 {
     *errors = (struct errors){.plan = plan,
                               .specs = specs,
+                              .file = file,
                               .slots = calloc((size_t)plan->trial_count * 2 + 1, sizeof *errors->slots)};
     snprintf(error, error_size, "out of memory");
     if (errors->slots)

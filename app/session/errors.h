@@ -26,6 +26,7 @@ struct errors_table;
 struct errors {
     const struct plan *plan;    // borrowed
     const char *const *specs;   // borrowed
+    const char *file;           // "": none; borrowed
     double *slots;              // [trial][2], NaN: it depends on the trial's course; owned
     struct errors_table *table; // owned
 };

@@ -103,8 +103,9 @@ static bool read_line(struct errors_table *table, const char *file, int number, 
     }
     *value++ = *option++ = '\0';
     known.error = strtod(value, &end);
-    if (end == value || *end || !(known.error >= 0.0) || !isfinite(known.error)) {
-        snprintf(error, error_size, "%s:%d: '%s' is no error; it is a number from 0 up", file, number, value);
+    if (end == value || *end || !(known.error >= 0.0 && known.error <= 1.0)) {
+        snprintf(error, error_size, "%s:%d: '%s' is no error; it is a number from 0 to 1 (black against white)",
+                 file, number, value);
         return false;
     }
     if (!mode_parse(option, &known.choice, why, sizeof why)) {

@@ -185,8 +185,10 @@ static enum store_result end_invalid(struct recorder *recorder, const struct mac
 
 static struct store_staircase_step stored_step(const struct staircase_step *step)
 {
-    return (struct store_staircase_step){
-        .level = step->level, .outcome = step->outcome, .reversal = step->reversal, .estimate = step->estimate};
+    return (struct store_staircase_step){.level = plan_level(step->level),
+                                         .outcome = step->outcome,
+                                         .reversal = step->reversal,
+                                         .estimate = step->estimate};
 }
 
 static enum store_result store_choice_row(struct recorder *recorder, const struct machine_record *record,

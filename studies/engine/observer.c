@@ -94,8 +94,7 @@ static bool parse_pair(char *pair, struct observer_parameters *out, char *error,
             memcpy(out->errors, value, strlen(value) + 1);
             return true;
         }
-        snprintf(error, error_size, "observer: errors names a file by at most %d characters",
-                 OBSERVER_PATH - 1);
+        snprintf(error, error_size, "observer: errors names a file by 1 to %d characters", OBSERVER_PATH - 1);
         return false;
     }
     const char *names[KNOBS + 2] = {NULL};
@@ -107,8 +106,7 @@ static bool parse_pair(char *pair, struct observer_parameters *out, char *error,
     names[KNOBS] = "errors";
     const char *nearest = read_nearest(pair, names);
     snprintf(error, error_size, "observer: parameter '%.60s' is not known; %s%s%s", pair,
-             nearest ? "did you mean '" : "see fovstudy run --help", nearest ? nearest : "",
-             nearest ? "'?" : "");
+             nearest ? "did you mean '" : "the help lists them", nearest ? nearest : "", nearest ? "'?" : "");
     return false;
 }
 

@@ -13,6 +13,7 @@ struct maker {
     struct plan *plan;
     struct draw_person person;
     struct draw *draws; // one per block
+    bool bare;
 };
 
 const char *plan_slot_name(enum plan_slot slot)
@@ -49,8 +50,9 @@ static bool same_values(const double *a, const double *b)
 }
 
 // Index of a condition, added where it is new; -1: its JSON does not fit.
-static int32_t condition_index(struct plan *plan, const struct protocol_option *option)
+static int32_t condition_index(const struct maker *maker, const struct protocol_option *option)
 {
+    struct plan *plan = maker->plan;
     for (uint32_t i = 0; i < plan->condition_count; i++)
         if (plan->conditions[i].mode_index == option->mode &&
             same_values(plan->conditions[i].values, option->values))
@@ -59,7 +61,8 @@ static int32_t condition_index(struct plan *plan, const struct protocol_option *
     made->mode = plan->protocol->catalogue->modes[option->mode].name;
     made->mode_index = option->mode;
     memcpy(made->values, option->values, sizeof made->values);
-    if (!protocol_option_json(plan->protocol, option, made->parameters, sizeof made->parameters))
+    if (!maker->bare &&
+        !protocol_option_json(plan->protocol, option, made->parameters, sizeof made->parameters))
         return -1;
     return (int32_t)plan->condition_count++;
 }
@@ -105,6 +108,8 @@ static bool factors_json(const struct maker *maker, const struct protocol_cell *
 // What a trial's settings say beyond the block's: where its target moves, what is played back.
 static bool settings_json(const struct maker *maker, struct plan_trial *trial)
 {
+    if (maker->bare)
+        return true;
     struct text text = {0};
     if (trial->resolved->fixation == PROTOCOL_FIXATION_MOVING)
         text_add(&text, ",\"target_seed\":%u", trial->target_seed);
@@ -142,7 +147,7 @@ static bool place_options(struct maker *maker, const struct protocol_block *bloc
 {
     const struct protocol_option *option = cell->option;
     if (!protocol_kind_is_pair(block->kind)) {
-        trial->option[0] = condition_index(maker->plan, &option[draw->option]);
+        trial->option[0] = condition_index(maker, &option[draw->option]);
         trial->option[1] = -1;
         trial->test_slot = draw->option == 0 ? PLAN_SLOT_A : PLAN_SLOT_NONE;
         trial->first_shown = PLAN_SLOT_A;
@@ -155,7 +160,7 @@ static bool place_options(struct maker *maker, const struct protocol_block *bloc
     trial->first_shown =
         trial->kind == PROTOCOL_SEQUENTIAL ? PLAN_SLOT_A : (enum plan_slot)(side ^ reference_first);
     for (uint32_t i = 0; i < 2; i++) {
-        trial->option[side ^ i] = condition_index(maker->plan, &option[i]);
+        trial->option[side ^ i] = condition_index(maker, &option[i]);
         trial->prerendered[side ^ i] = option[i].playback == PROTOCOL_PRERENDERED;
     }
     return trial->option[0] >= 0 && trial->option[1] >= 0;
@@ -194,16 +199,16 @@ static bool make_trial(struct maker *maker, uint32_t index, uint32_t place, stru
 }
 
 // Conditions in the protocol's order, so that every participant of a study has the same list.
-static bool list_conditions(struct plan *plan)
+static bool list_conditions(const struct maker *maker)
 {
-    const struct protocol *protocol = plan->protocol;
+    const struct protocol *protocol = maker->plan->protocol;
     for (uint32_t b = 0; b < protocol->block_count; b++) {
         const struct protocol_block *block = &protocol->blocks[b];
         for (uint32_t i = 0; i < block->cell_count + 2; i++) {
             if (i >= block->cell_count && block->extras[i - block->cell_count].count == 0)
                 continue;
             for (uint32_t k = 0; k < block->option_count; k++)
-                if (condition_index(plan, &cell_of(block, i)->option[k]) < 0)
+                if (condition_index(maker, &cell_of(block, i)->option[k]) < 0)
                     return false;
         }
     }
@@ -224,7 +229,7 @@ static bool fill(struct maker *maker)
     }
     plan->trials = calloc(total, sizeof *plan->trials);
     plan->conditions = calloc(2 * (size_t)cells, sizeof *plan->conditions);
-    if (!plan->trials || !plan->conditions || !list_conditions(plan))
+    if (!plan->trials || !plan->conditions || !list_conditions(maker))
         return false;
     for (uint32_t b = 0; b < protocol->block_count; b++)
         for (uint32_t place = 0; place < maker->draws[b].total; place++)
@@ -233,11 +238,11 @@ static bool fill(struct maker *maker)
     return true;
 }
 
-struct plan *plan_create(const struct protocol *protocol, uint64_t seed, uint32_t number)
+static struct plan *create(const struct protocol *protocol, uint64_t seed, uint32_t number, bool bare)
 {
     struct plan *plan = calloc(1, sizeof *plan);
     struct maker maker = {plan, draw_person(protocol, seed, number),
-                          calloc(protocol->block_count, sizeof *maker.draws)};
+                          calloc(protocol->block_count, sizeof *maker.draws), bare};
     bool ok = plan && maker.draws;
     if (ok) {
         *plan =
@@ -249,6 +254,16 @@ struct plan *plan_create(const struct protocol *protocol, uint64_t seed, uint32_
         return plan;
     plan_destroy(plan);
     return NULL;
+}
+
+struct plan *plan_create(const struct protocol *protocol, uint64_t seed, uint32_t number)
+{
+    return create(protocol, seed, number, false);
+}
+
+struct plan *plan_create_bare(const struct protocol *protocol, uint64_t seed, uint32_t number)
+{
+    return create(protocol, seed, number, true);
 }
 
 void plan_destroy(struct plan *plan)

@@ -72,10 +72,13 @@ struct plan {
 // number counts from 0, so that 4j..4j+3 are whole groups. The protocol must outlive the plan. NULL: out of
 // memory.
 struct plan *plan_create(const struct protocol *protocol, uint64_t seed, uint32_t number);
+// The same without the texts of settings and parameters, which take most of the time: for counting many people.
+struct plan *plan_create_bare(const struct protocol *protocol, uint64_t seed, uint32_t number);
 void plan_destroy(struct plan *plan); // NULL is fine
 
 // A level or an adjusted value as an option has it, rounded to 9 digits: those reached by adding steps differ
-// in their last ones and are the same condition.
+// in their last ones and are the same condition. What the store keeps of a staircase's step is this level, so
+// that it equals its condition's.
 double plan_level(double level);
 // The option under test of a staircase trial at a level.
 struct protocol_option plan_level_option(const struct plan *plan, const struct plan_trial *trial, double level);
@@ -92,7 +95,7 @@ char *plan_table_json(const struct plan *plan);
 char *plan_counts_text(const struct protocol *protocol, uint64_t seed, uint32_t first, uint32_t count);
 char *plan_counts_json(const struct protocol *protocol, uint64_t seed, uint32_t first, uint32_t count);
 
-// Each participant's plan in turn, until one is refused. False: out of memory, or refused.
+// Each participant's plan in turn, bare, until one is refused. False: out of memory, or refused.
 typedef bool (*plan_fn)(void *user, const struct plan *plan);
 bool plan_each(const struct protocol *protocol, uint64_t seed, uint32_t first, uint32_t count, plan_fn visit,
                void *user);

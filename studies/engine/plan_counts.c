@@ -12,7 +12,7 @@ bool plan_each(const struct protocol *protocol, uint64_t seed, uint32_t first, u
 {
     bool ok = true;
     for (uint32_t i = 0; i < count && ok; i++) {
-        struct plan *plan = plan_create(protocol, seed, first + i);
+        struct plan *plan = plan_create_bare(protocol, seed, first + i);
         ok = plan && visit(user, plan);
         plan_destroy(plan);
     }
@@ -22,6 +22,7 @@ bool plan_each(const struct protocol *protocol, uint64_t seed, uint32_t first, u
 // How often something came in one cell of one block.
 struct count {
     uint32_t block, cell;
+    enum protocol_role role;
     char factors[PLAN_JSON];
     uint32_t trials, test_a, test_b, test_first, scene[PROTOCOL_SCENES];
 };
@@ -46,7 +47,7 @@ static struct count *count_row(struct counts *counts, const struct plan_trial *t
         counts->capacity = capacity;
     }
     struct count *row = &counts->rows[counts->used++];
-    *row = (struct count){.block = trial->block, .cell = trial->cell};
+    *row = (struct count){.block = trial->block, .cell = trial->cell, .role = trial->role};
     memcpy(row->factors, trial->factors, sizeof row->factors);
     return row;
 }
@@ -107,13 +108,25 @@ static bool scenes_fit(const struct protocol *protocol)
     return width <= 40;
 }
 
-static void row_write(struct text *text, const struct protocol *protocol, const struct count *row, int width)
+// A column of roles where they differ, as in a participant's trials.
+static bool roles_differ(const struct counts *counts)
+{
+    for (uint32_t r = 1; r < counts->used; r++)
+        if (counts->rows[r].role != counts->rows[0].role)
+            return true;
+    return false;
+}
+
+static void row_write(struct text *text, const struct protocol *protocol, const struct count *row, int width,
+                      bool roles)
 {
     struct text members = {0};
     size_t begin = text->size;
     bool fit = scenes_fit(protocol);
-    text_add(text, "%-*s %7u %7u %7u %7u", width, protocol->blocks[row->block].name, row->trials, row->test_a,
-             row->test_b, row->test_first);
+    text_add(text, "%-*s ", width, protocol->blocks[row->block].name);
+    if (roles)
+        text_add(text, "%-8s ", protocol_role_name(row->role));
+    text_add(text, "%7u %7u %7u %7u", row->trials, row->test_a, row->test_b, row->test_first);
     for (uint32_t i = 0; i < protocol->scene_count; i++) {
         if (fit)
             text_add(text, " %*u", scene_width(protocol, i), row->scene[i]);
@@ -136,14 +149,18 @@ char *plan_counts_text(const struct protocol *protocol, uint64_t seed, uint32_t 
     int width = 5;
     for (uint32_t b = 0; b < protocol->block_count; b++)
         width = (int)strlen(protocol->blocks[b].name) > width ? (int)strlen(protocol->blocks[b].name) : width;
-    text_add(&text, "%u participants from number %u, seed %llu\n\n%-*s %7s %7s %7s %7s", count, first + 1,
-             (unsigned long long)seed, width, "block", "trials", "test=a", "test=b", "first");
+    text.failed = !count_all(protocol, seed, first, count, &counts);
+    bool roles = roles_differ(&counts);
+    text_add(&text, "%u participants from number %u, seed %llu\n\n%-*s ", count, first + 1,
+             (unsigned long long)seed, width, "block");
+    if (roles)
+        text_add(&text, "%-8s ", "role");
+    text_add(&text, "%7s %7s %7s %7s", "trials", "test=a", "test=b", "first");
     for (uint32_t i = 0; i < protocol->scene_count && scenes_fit(protocol); i++)
         text_add(&text, " %*s", scene_width(protocol, i), protocol->scenes[i]);
     text_add(&text, scenes_fit(protocol) ? "  factors\n" : "  scenes and factors\n");
-    text.failed = !count_all(protocol, seed, first, count, &counts) || text.failed;
     for (uint32_t r = 0; r < counts.used; r++)
-        row_write(&text, protocol, &counts.rows[r], width);
+        row_write(&text, protocol, &counts.rows[r], width, roles);
     free(counts.rows);
     return text_take(&text);
 }
@@ -157,10 +174,11 @@ char *plan_counts_json(const struct protocol *protocol, uint64_t seed, uint32_t 
     for (uint32_t r = 0; r < counts.used; r++) {
         const struct count *row = &counts.rows[r];
         text_add(&text,
-                 "%s\n{\"block\":\"%s\",\"factors\":%s,\"trials\":%u,\"test_a\":%u,\"test_b\":%u,\"test_"
+                 "%s\n{\"block\":\"%s\",\"role\":\"%s\",\"factors\":%s,\"trials\":%u,\"test_a\":%u,\"test_b\":%"
+                 "u,\"test_"
                  "first\":%u,\"scenes\":{",
-                 r ? "," : "", protocol->blocks[row->block].name, row->factors, row->trials, row->test_a,
-                 row->test_b, row->test_first);
+                 r ? "," : "", protocol->blocks[row->block].name, protocol_role_name(row->role), row->factors,
+                 row->trials, row->test_a, row->test_b, row->test_first);
         for (uint32_t i = 0; i < protocol->scene_count; i++)
             text_add(&text, "%s\"%s\":%u", i ? "," : "", protocol->scenes[i], row->scene[i]);
         text_add(&text, "}}");

@@ -182,8 +182,9 @@ static bool check_grid(const struct quest_plus_grid *grid, const char *name, dou
         return fail(error, error_size, "the grid of %s goes from %g to %g; it must lie between %g and %g", name,
                     grid->min, grid->max, low, high);
     if (grid->count == 1 && grid->min != grid->max)
-        return fail(error, error_size, "the grid of %s has one value but goes from %g to %g", name, grid->min,
-                    grid->max);
+        return fail(error, error_size,
+                    "the grid of %s has one value but goes from %g to %g; give it a 'count' of 2 or more", name,
+                    grid->min, grid->max);
     if (grid->count > 1 && !(grid->min < grid->max))
         return fail(error, error_size, "the grid of %s has %u values; min %g must be below max %g", name,
                     grid->count, grid->min, grid->max);

@@ -134,6 +134,18 @@ static void times_remark(struct reader *reader, const struct yaml_node *map, con
     }
 }
 
+// Each one that stands between two trials of the squares takes a succession out of the balance.
+static void between_remark(struct reader *reader, const struct yaml_node *map,
+                           const struct protocol_block *block)
+{
+    uint32_t extras = block->extras[0].count + block->extras[1].count;
+    if (block->order == PROTOCOL_ORDER_LATIN && extras > 0)
+        read_remark(
+            reader, yaml_get(map, "order"),
+            "carry-over in block '%s' is not balanced exactly: null and catch trials come between its cells",
+            block->name);
+}
+
 static void block_remark(struct reader *reader, const struct yaml_node *map, const struct protocol_block *block)
 {
     uint32_t trials = protocol_block_trials(block), counted = 0;
@@ -150,6 +162,7 @@ static void block_remark(struct reader *reader, const struct yaml_node *map, con
         read_remark(reader, map,
                     "block '%s' has no trial that an analysis counts: all are practice, catch or null",
                     block->name);
+    between_remark(reader, map, block);
     idle_factor_remark(reader, map, block);
     times_remark(reader, map, block);
 }

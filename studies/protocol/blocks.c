@@ -114,11 +114,20 @@ static bool drawn_rating_check(struct reader *reader, const struct yaml_node *ma
     return true;
 }
 
+// A block without what makes it its kind: said before anything that follows from it.
+static bool kind_check(struct reader *reader, const struct yaml_node *map, const struct protocol_block *block)
+{
+    if (block->kind == PROTOCOL_ADJUST)
+        return read_required(reader, map, "the adjust block", "adjust") != NULL;
+    return block->kind != PROTOCOL_STAIRCASE ||
+           read_required(reader, map, "the staircase block", "staircase") != NULL;
+}
+
 static bool design_read(struct reader *reader, const struct yaml_node *map, struct protocol_block *block)
 {
     uint32_t order = PROTOCOL_ORDER_RANDOM;
     block->repetitions = 1;
-    if (!drawn_rating_check(reader, map, block) ||
+    if (!kind_check(reader, map, block) || !drawn_rating_check(reader, map, block) ||
         !key_integer(reader, map, &language_block, "repetitions", &block->repetitions) ||
         !key_word(reader, map, &language_block, "order", &order) || !cells_read(reader, map, block) ||
         !extras_read(reader, map, block) || !adjusts_read(reader, map, block))

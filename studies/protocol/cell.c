@@ -80,7 +80,10 @@ bool cell_change(struct reader *reader, const struct yaml_node *map, const struc
     const char *names[PROTOCOL_SCENES + 1];
     uint32_t scene = 0, found = 0, role = cell->role;
     scene_names(reader, names);
-    if (!read_section(reader, map, &language_level, NULL) || !change_options(reader, map, block, cell) ||
+    struct language_section section = language_level;
+    if (block->listed)
+        section.title = "the trial";
+    if (!read_section(reader, map, &section, NULL) || !change_options(reader, map, block, cell) ||
         !key_names(reader, map, &language_level, "scene", "scene", names, 1, &scene, &found) ||
         !key_word(reader, map, &language_level, "role", &role) ||
         !key_labels(reader, map, "labels", cell->labels) ||
@@ -110,7 +113,8 @@ static bool question_check(struct reader *reader, const struct yaml_node *node,
     for (uint32_t i = 0; i < settings->asked_count && block->kind != PROTOCOL_ADJUST; i++) {
         const struct protocol_question *question = &protocol->questions[settings->asked[i]];
         if (rates && question->type != PROTOCOL_ASK_RATING)
-            return read_fail(reader, node, "block '%s' rates, but question '%s' has no 'scale'; add one",
+            return read_fail(reader, node,
+                             "block '%s' rates, but question '%s' has no 'scale'; add one, or ask another",
                              block->name, question->name);
         bool scale_too = block->kind == PROTOCOL_STAIRCASE && question->type == PROTOCOL_ASK_RATING;
         if (!rates && question->type != PROTOCOL_ASK_CHOICE && !scale_too)
@@ -184,7 +188,9 @@ bool cell_check(struct reader *reader, const struct yaml_node *node, const struc
 {
     const struct protocol_settings *settings = &cell->settings;
     bool pair = protocol_kind_is_pair(block->kind);
-    if (!question_check(reader, node, block, cell) || !count_check(reader, node, block, settings) ||
+    bool task = block->kind == PROTOCOL_TASK; // whose count is what it is about
+    if ((task && !count_check(reader, node, block, settings)) || !question_check(reader, node, block, cell) ||
+        (!task && !count_check(reader, node, block, settings)) ||
         !timing_check(reader, node, block, settings) || !playback_check(reader, node, block, cell))
         return false;
     if (settings->foveate == PROTOCOL_FOVEATE_TARGET && settings->fixation == PROTOCOL_FIXATION_FREE)
@@ -204,7 +210,10 @@ bool cell_check(struct reader *reader, const struct yaml_node *node, const struc
         memcmp(cell->option[0].values, cell->option[1].values, sizeof cell->option[0].values) == 0)
         return read_fail(
             reader, node,
-            "block '%s' has a trial whose two options are the same; write 'role: null' if so meant",
+            cell->role == PROTOCOL_CATCH
+                ? "block '%s' has a catch trial whose two options are the same; name an option, or "
+                  "parameters of it, that differ obviously"
+                : "block '%s' has a trial whose two options are the same; write 'role: null' if so meant",
             block->name);
     return true;
 }

@@ -67,9 +67,11 @@ static bool list_levels(struct reader *reader, const struct yaml_node *list, con
                         const struct yaml_node *at, struct protocol_factor *factor, struct levels *out)
 {
     uint32_t depth = 0;
+    char what[PROTOCOL_NAME + 16];
     while (nest[depth])
         depth++;
-    if (!read_is_list(reader, list, "levels", 1, PROTOCOL_LEVELS))
+    snprintf(what, sizeof what, "factor '%s'", factor->name);
+    if (!read_is_list(reader, list, what, 1, PROTOCOL_LEVELS))
         return false;
     for (const struct yaml_node *node = list->first; node; node = node->next) {
         const struct yaml_node *change = node;
@@ -112,7 +114,7 @@ static bool named_levels(struct reader *reader, const struct yaml_node *map, str
                          struct levels *out)
 {
     if (map->count < 1 || map->count > PROTOCOL_LEVELS)
-        return read_fail(reader, map, "levels has %u entries; it takes 1 to %d", map->count, PROTOCOL_LEVELS);
+        return read_fail_count(reader, map, "levels", 1, PROTOCOL_LEVELS);
     for (const struct yaml_node *node = map->first; node; node = node->next) {
         struct yaml_node name = {
             .kind = YAML_SCALAR, .text = node->key, .line = node->key_line, .column = node->key_column};
@@ -194,8 +196,7 @@ static bool factors_read(struct reader *reader, const struct yaml_node *map, str
     if (!read_is_map(reader, map, "factors"))
         return false;
     if (map->count > PROTOCOL_FACTORS)
-        return read_fail(reader, map, "factors has %u entries; it takes up to %d", map->count,
-                         PROTOCOL_FACTORS);
+        return read_fail_count(reader, map, "factors", 0, PROTOCOL_FACTORS);
     for (const struct yaml_node *node = map->first; node; node = node->next) {
         struct levels *mine = &levels[block->factor_count];
         if (!factor_read(reader, node, &block->factors[block->factor_count], mine))

@@ -346,21 +346,40 @@ static const struct language_key staircase_keys[] = {
     {"parameter", LANGUAGE_NAME, true, .about = "A number among the parameters of the option under test.",
      .example = "parameter: epsilon"},
     {"method", LANGUAGE_WORD, true, .words = WORDS("1up2down", "weighted", "quest_plus"),
-     .about = "Levitt 1971; Kaernbach 1991; Watson 2017.", .example = "method: quest_plus"},
+     .about =
+         "1up2down (Levitt 1971): harder after two right answers in a row, easier after a wrong one; settles "
+         "at "
+         "70.7 % right. weighted (Kaernbach 1991): harder by a step after a right answer, easier by step x "
+         "target / "
+         "(1 - target) after a wrong one. quest_plus (Watson 2017): the level expected to tell most about the "
+         "model; its estimate is the posterior mean of the threshold. The estimate of 1up2down and weighted is "
+         "the "
+         "mean level at reversals (geometric with log spacing): with n steps the first n - 1 reversals are "
+         "left "
+         "out, and one more where those that remain are odd in number; there is none before two remain.",
+     .example = "method: quest_plus"},
     {"larger", LANGUAGE_WORD, true, .words = WORDS("easier", "harder"),
      .about = "Whether larger levels make the right answer easier or harder to find.",
      .example = "larger: easier"},
-    {"level", LANGUAGE_MAP, true, .of = "the grid", .about = "Levels that may be shown.",
+    {"level", LANGUAGE_MAP, true, .of = "the grid",
+     .about =
+         "Levels that may be shown. An up-down step that would leave them ends at min or max; where it is "
+         "there "
+         "already the level stays, which is no reversal. So an estimate near an end says little: widen it.",
      .example = "level: {min: 0.01, max: 1, count: 25, spacing: log}"},
     {"trials", LANGUAGE_INTEGER, true, 1, 512, .about = "Most trials of one staircase.",
      .example = "trials: 40"},
-    {"reversals", LANGUAGE_INTEGER, false, 1, 200, .about = "Of up-down: stop after so many.",
+    {"reversals", LANGUAGE_INTEGER, false, 1, 200,
+     .about = "Of up-down: stop after so many, of every step size. A reversal is a step in the other direction "
+              "than the "
+              "last; its level is the one that was shown when the answer turned it.",
      .example = "reversals: 12"},
     {"start", LANGUAGE_NUMBER, false, -1e9, 1e9, .about = "Of up-down: the first level.",
      .example = "start: 0.5"},
     {"steps", LANGUAGE_LIST, false, 1, 16, .items = LANGUAGE_NUMBER, .item_max = 1e9,
-     .about =
-         "Of up-down: sizes of the steps up to each reversal, the last from then on; with log spacing factors.",
+     .about = "Of up-down: the first until the first reversal, the second until the second and so on, the last "
+              "from then "
+              "on; with log spacing factors (the weight of weighted is then an exponent).",
      .example = "steps: [0.1, 0.05, 0.02]"},
     {"target", LANGUAGE_NUMBER, false, 0, 1, .about = "Of weighted: the share of right answers to settle at.",
      .example = "target: 0.75"},

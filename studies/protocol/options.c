@@ -163,8 +163,10 @@ bool options_read(struct reader *reader, const struct yaml_node *root)
     if (!read_is_map(reader, map, "options"))
         return false;
     if (map->count == 0 || map->count > PROTOCOL_OPTIONS)
-        return read_fail(reader, map, "options has %u entries; it takes 1 to %d", map->count, PROTOCOL_OPTIONS);
+        return read_fail_count(reader, map, "options", 1, PROTOCOL_OPTIONS);
     for (const struct yaml_node *node = map->first; node; node = node->next) {
+        protocol->option_places[protocol->option_count] =
+            (struct protocol_place){node->key_line, node->key_column};
         if (!option_read(reader, node, &protocol->options[protocol->option_count]))
             return false;
         protocol->option_count++;

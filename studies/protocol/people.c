@@ -54,8 +54,7 @@ bool questions_read(struct reader *reader, const struct yaml_node *root)
     if (!read_is_map(reader, map, "questions"))
         return false;
     if (map->count == 0 || map->count > PROTOCOL_QUESTIONS)
-        return read_fail(reader, map, "questions has %u entries; it takes 1 to %d", map->count,
-                         PROTOCOL_QUESTIONS);
+        return read_fail_count(reader, map, "questions", 1, PROTOCOL_QUESTIONS);
     for (const struct yaml_node *node = map->first; node; node = node->next) {
         if (!question_read(reader, node, &protocol->questions[protocol->question_count]))
             return false;
@@ -98,8 +97,10 @@ static bool limits_read(struct reader *reader, const struct yaml_node *map,
         return read_fail_key(reader, min ? min : max, "min and max are for numbers; remove them");
     if (min && !read_number(reader, min, "min", -1e15, 1e15, &attribute->min))
         return false;
-    if (max && !read_number(reader, max, "max", attribute->min, 1e15, &attribute->max))
+    if (max && !read_number(reader, max, "max", -1e15, 1e15, &attribute->max))
         return false;
+    if (max && attribute->max < attribute->min)
+        return read_fail(reader, max, "max is %g, below min %g; swap them", attribute->max, attribute->min);
     if (attribute->type != PROTOCOL_CHOICE)
         return choices ? read_fail_key(reader, choices, "choices are for 'type: choice'; change the type")
                        : true;

@@ -32,9 +32,10 @@ bool extras_read(struct reader *reader, const struct yaml_node *map, struct prot
     struct protocol_extra *null_extra = &block->extras[0];
     bool pair = block->kind == PROTOCOL_TOGGLE || block->kind == PROTOCOL_SEQUENTIAL;
     if ((catch_node || null_node) && !pair)
-        return read_fail_key(reader, null_node ? null_node : catch_node,
-                             "null and catch trials need two options to choose from; use them in toggle and "
-                             "sequential blocks");
+        return read_fail_key(
+            reader, null_node ? null_node : catch_node,
+            "blocks of kind %s have no null and catch trials; use them in toggle and sequential blocks",
+            protocol_kind_name(block->kind));
     if (!key_integer(reader, map, &language_block, "null", &null_extra->count))
         return false;
     if (null_extra->count > 0) {
@@ -53,7 +54,10 @@ static bool start_read(struct reader *reader, const struct yaml_node *map, struc
     const struct yaml_node *node = yaml_get(map, "start");
     return read_is_list(reader, node, "start", 2, 2) &&
            read_number(reader, node->first, "start", adjust->min, adjust->max, &adjust->start_min) &&
-           read_number(reader, node->last, "start", adjust->start_min, adjust->max, &adjust->start_max);
+           read_number(reader, node->last, "start", adjust->min, adjust->max, &adjust->start_max) &&
+           (adjust->start_max >= adjust->start_min ||
+            read_fail(reader, node, "start ends at %g, below its begin %g; swap them", adjust->start_max,
+                      adjust->start_min));
 }
 
 bool parameter_is_free(struct reader *reader, const struct yaml_node *node, const struct protocol_block *block,
@@ -89,9 +93,15 @@ static bool adjust_read(struct reader *reader, const struct yaml_node *node, str
     adjust->max = parameter->max;
     const struct yaml_node *min = yaml_get(node, "min"), *max = yaml_get(node, "max");
     if ((min && !read_number(reader, min, "min", parameter->min, parameter->max, &adjust->min)) ||
-        (max && !read_number(reader, max, "max", adjust->min, parameter->max, &adjust->max)) ||
+        (max && !read_number(reader, max, "max", parameter->min, parameter->max, &adjust->max)) ||
+        (adjust->max <= adjust->min &&
+         !read_fail(reader, max ? max : node, "max is %g, and min %g; it must be above min", adjust->max,
+                    adjust->min)) ||
         !key_number(reader, node, &language_adjust, "step", &adjust->step) || !start_read(reader, node, adjust))
         return false;
+    if (adjust->step > adjust->max - adjust->min)
+        return read_fail(reader, yaml_get(node, "step"), "step is %g; from min to max it is only %g",
+                         adjust->step, adjust->max - adjust->min);
     block->adjust_count++;
     return true;
 }
@@ -101,12 +111,10 @@ bool adjusts_read(struct reader *reader, const struct yaml_node *map, struct pro
     const struct yaml_node *adjust = yaml_get(map, "adjust");
     if (block->kind != PROTOCOL_ADJUST)
         return adjust ? read_fail_key(reader, adjust, "'adjust' belongs to blocks of 'kind: adjust'") : true;
-    adjust = read_required(reader, map, "the adjust block", "adjust");
-    if (!adjust || !read_is_map(reader, adjust, "adjust"))
+    if (!read_is_map(reader, adjust, "adjust"))
         return false;
     if (adjust->count < 1 || adjust->count > PROTOCOL_ADJUSTED)
-        return read_fail(reader, adjust, "adjust has %u entries; it takes 1 to %d", adjust->count,
-                         PROTOCOL_ADJUSTED);
+        return read_fail_count(reader, adjust, "adjust", 1, PROTOCOL_ADJUSTED);
     for (const struct yaml_node *node = adjust->first; node; node = node->next)
         if (!adjust_read(reader, node, block))
             return false;

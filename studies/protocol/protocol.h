@@ -268,7 +268,7 @@ struct protocol {
     struct protocol_exclusion exclusions[PROTOCOL_RULES];
     uint32_t exclusion_count;
     struct protocol_block blocks[PROTOCOL_BLOCKS];
-    struct protocol_place block_places[PROTOCOL_BLOCKS];
+    struct protocol_place block_places[PROTOCOL_BLOCKS], option_places[PROTOCOL_OPTIONS];
     uint32_t block_count;
     char *remarks[PROTOCOL_REMARKS]; // sentences as errors are, in the order of the file's sections
     uint32_t remark_count;

@@ -109,20 +109,39 @@ bool read_unknown(struct reader *reader, const struct yaml_node *node, bool at_k
     return false;
 }
 
+// "key:" and nothing after it
+static bool is_empty(const struct yaml_node *node)
+{
+    return node->kind == YAML_SCALAR && !*node->text && !node->quoted;
+}
+
 bool read_is_map(struct reader *reader, const struct yaml_node *node, const char *what)
 {
     if (node->kind == YAML_MAP)
         return true;
+    if (is_empty(node))
+        return read_fail(reader, node, "%s has no value; write 'key: value' below it", what);
     return read_fail(reader, node, "%s is a mapping; write 'key: value' below it", what);
+}
+
+bool read_fail_count(struct reader *reader, const struct yaml_node *node, const char *what, uint32_t min,
+                     uint32_t max)
+{
+    const char *entries = node->count == 1 ? "entry" : "entries";
+    if (min == max)
+        return read_fail(reader, node, "%s has %u %s; it takes %u", what, node->count, entries, min);
+    return read_fail(reader, node, "%s has %u %s; it takes %u to %u", what, node->count, entries, min, max);
 }
 
 bool read_is_list(struct reader *reader, const struct yaml_node *node, const char *what, uint32_t min,
                   uint32_t max)
 {
+    if (is_empty(node))
+        return read_fail(reader, node, "%s has no value; write [..., ...] or one '- ' line each", what);
     if (node->kind != YAML_LIST)
         return read_fail(reader, node, "%s is a list; write [..., ...] or one '- ' line each", what);
     if (node->count < min || node->count > max)
-        return read_fail(reader, node, "%s has %u entries; it takes %u to %u", what, node->count, min, max);
+        return read_fail_count(reader, node, what, min, max);
     return true;
 }
 
@@ -167,7 +186,7 @@ static bool is_scalar(struct reader *reader, const struct yaml_node *node, const
     if (node->kind != YAML_SCALAR)
         return read_fail(reader, node, "%s is %s, not a %s", what, wanted,
                          node->kind == YAML_LIST ? "list" : "mapping");
-    if (!*node->text && !node->quoted)
+    if (is_empty(node))
         return read_fail(reader, node, "%s has no value; give %s", what, wanted);
     return true;
 }
@@ -227,6 +246,8 @@ bool read_integer(struct reader *reader, const struct yaml_node *node, const cha
     bool digits = strspn(node->text, "+-0123456789") == strlen(node->text);
     if (node->quoted || !digits || end == node->text || *end)
         return read_fail(reader, node, "%s is a whole number, not '%.60s'", what, node->text);
+    if (min == max && value != min)
+        return read_fail(reader, node, "%s is %.60s; it must be %lld", what, node->text, (long long)min);
     if (errno == ERANGE || value < min || value > max)
         return read_fail(reader, node, "%s is %.60s; it must lie between %lld and %lld", what, node->text,
                          (long long)min, (long long)max);

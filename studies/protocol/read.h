@@ -33,6 +33,9 @@ bool read_unknown(struct reader *reader, const struct yaml_node *node, bool at_k
 const char *read_nearest(const char *word, const char *const *known);
 
 bool read_is_map(struct reader *reader, const struct yaml_node *node, const char *what);
+// Says how many entries a list or a mapping takes.
+bool read_fail_count(struct reader *reader, const struct yaml_node *node, const char *what, uint32_t min,
+                     uint32_t max);
 bool read_is_list(struct reader *reader, const struct yaml_node *node, const char *what, uint32_t min,
                   uint32_t max);
 // A mapping whose keys are those of the section or, where it is open, of `more` (NULL: none), with all that are

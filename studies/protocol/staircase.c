@@ -104,6 +104,60 @@ static bool outcomes_of(struct reader *reader, const struct yaml_node *map, cons
     return true;
 }
 
+// What each method takes beyond what all take; what it lacks, or cannot use, is said by name.
+static bool keys_check(struct reader *reader, const struct yaml_node *map, const char *method)
+{
+    static const struct {
+        const char *key, *methods, *needed, *about;
+    } rules[] = {
+        {"start", "1up2down weighted", "1up2down weighted", "the first level, as 'start: 0.5'"},
+        {"steps", "1up2down weighted", "1up2down weighted", "the sizes of its steps, as 'steps: [0.1, 0.05]'"},
+        {"target", "weighted", "weighted", "the share of right answers to settle at, as 'target: 0.75'"},
+        {"reversals", "1up2down weighted", "", ""},
+        {"model", "quest_plus", "quest_plus",
+         "the psychometric functions it weighs, with family, threshold and slope"},
+    };
+    for (size_t i = 0; i < sizeof rules / sizeof rules[0]; i++) {
+        const struct yaml_node *node = yaml_get(map, rules[i].key);
+        if (!node && strstr(rules[i].needed, method))
+            return read_fail(reader, map, "method '%s' has no '%s'; add %s", method, rules[i].key,
+                             rules[i].about);
+        if (node && !strstr(rules[i].methods, method))
+            return read_fail_key(reader, node, "method '%s' takes no '%s'%s; remove it", method, rules[i].key,
+                                 strcmp(rules[i].key, "target") == 0 && strcmp(method, "1up2down") == 0
+                                     ? ", it settles at 70.7 % right answers"
+                                     : "");
+    }
+    const struct yaml_node *level = yaml_get(map, "level"),
+                           *count = level->kind == YAML_MAP ? yaml_get(level, "count") : NULL;
+    bool chosen = strcmp(method, "quest_plus") == 0;
+    if (level->kind == YAML_MAP && chosen && !count)
+        return read_fail(reader, level,
+                         "method 'quest_plus' chooses among levels; add how many, as 'count: 25'");
+    if (count && !chosen)
+        return read_fail_key(
+            reader, count, "method '%s' steps from level to level, so it takes no 'count'; remove it", method);
+    return true;
+}
+
+// Where a sentence of staircase_check begins with the name of a key, that key.
+static const struct yaml_node *blamed(const struct yaml_node *map, const char *why)
+{
+    static const char *const words[][2] = {
+        {"start ", "start"}, {"step ", "steps"}, {"target ", "target"}, {"levels ", "level"}};
+    for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
+        if (strncmp(why, words[i][0], strlen(words[i][0])) == 0 && yaml_get(map, words[i][1]))
+            return yaml_get(map, words[i][1]);
+    static const char *const grids[] = {"threshold", "slope", "guess", "lapse"};
+    static const char grid[] = "the grid of ";
+    const struct yaml_node *model = yaml_get(map, "model");
+    for (size_t i = 0; model && strncmp(why, grid, sizeof grid - 1) == 0 && i < sizeof grids / sizeof grids[0];
+         i++)
+        if (strncmp(why + sizeof grid - 1, grids[i], strlen(grids[i])) == 0 && yaml_get(model, grids[i]))
+            return yaml_get(model, grids[i]);
+    return map;
+}
+
 bool staircase_read(struct reader *reader, const struct yaml_node *block_map, struct protocol_block *block)
 {
     static const char *const taken[] = {"repetitions", "order", NULL};
@@ -119,9 +173,8 @@ bool staircase_read(struct reader *reader, const struct yaml_node *block_map, st
             return read_fail_key(reader, yaml_get(block_map, taken[i]),
                                  "a staircase has its own %s; remove this key and set 'trials' in it",
                                  taken[i]);
-    map = read_required(reader, block_map, "the staircase block", "staircase");
-    if (!map || !read_section(reader, map, section, NULL) ||
-        !key_word(reader, map, section, "method", &method) ||
+    if (!read_section(reader, map, section, NULL) || !key_word(reader, map, section, "method", &method) ||
+        !keys_check(reader, map, language_find(section, "method")->words[method]) ||
         !key_word(reader, map, section, "larger", &larger) || !grid_read(reader, map, "level", &desc->level) ||
         !key_integer(reader, map, section, "trials", &desc->trials) ||
         !key_integer(reader, map, section, "reversals", &desc->reversals) ||
@@ -137,12 +190,12 @@ bool staircase_read(struct reader *reader, const struct yaml_node *block_map, st
                          staircase_method_name(desc->method), desc->model.outcomes);
     if (!adaptive)
         desc->model.outcomes = 0;
-    if (!adaptive && !yaml_get(yaml_get(map, "level"), "count"))
+    if (!adaptive)
         desc->level.count = 0;
     if (!model_read(reader, map, &desc->model) || !parameter_of(reader, map, block))
         return false;
     if (!staircase_check(desc, why, sizeof why))
-        return read_fail(reader, map, "%s", why);
+        return read_fail(reader, blamed(map, why), "%s", why);
     block->repetitions = desc->trials;
     block->order = PROTOCOL_ORDER_BLOCK_RANDOM;
     return true;

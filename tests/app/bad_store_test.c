@@ -224,7 +224,11 @@ static void resume_refuses_what_differs(void **state)
     command("sed -i 's/rest_s: 0.5/rest_s: 0.7/' '%s/mine.yaml'", folder);
     result = command("fovstudy resume --db '%s/r.db'", folder);
     assert_int_equal(result->status, 1);
-    assert_non_null(strstr(result->err, "\n-  rest_s: 0.5\n+  rest_s: 0.7\nfovstudy: "));
+    // the sentence first, then what it is about
+    assert_int_equal(strncmp(result->err, "fovstudy: ", 10), 0);
+    const char *sentence_end = strstr(result->err, "the text in the study file\n--- session 1 line ");
+    assert_non_null(sentence_end);
+    assert_non_null(strstr(sentence_end, "\n-  rest_s: 0.5\n+  rest_s: 0.7\n"));
     result = command("fovstudy resume --db '%s/r.db' --protocol '%s/mine.yaml'", folder, folder);
     assert_non_null(strstr(result->err, "was changed since session 1 began"));
     // A trial that would now be another one.

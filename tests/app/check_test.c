@@ -90,6 +90,10 @@ static void every_kind_is_told(void **state)
         has(result, cells[i]);
     has(result, "better        3 cross ");
     has(result, "16 participants from number 1");
+    has(result, "block   role      trials  test=a  test=b   first  atrium    hall  factors\n");
+    has(result, "\ntoggled null          16 ");
+    has(result, "\ntoggled catch         16 ");
+    has(result, "\npaired  main          16 ");
     has(result, "expected duration: ");
     has(result, "the file plans no analysis");
     for (const char *line = result->out; *line;) {
@@ -98,10 +102,31 @@ static void every_kind_is_told(void **state)
             fail_msg("%zu columns: %.*s", length, (int)length, line);
         line += length + (line[length] != '\0');
     }
-    result = command("cd '%s' && fovstudy check p.yaml --counts 16 --json | python3 -m json.tool > /dev/null",
-                     folder);
+    result =
+        command("cd '%s' && fovstudy check p.yaml --counts 16 --json | python3 -c 'import json, sys; print("
+                "sorted((r[\"role\"], r[\"trials\"]) for r in json.load(sys.stdin)[\"counts\"] if r[\"block\"] "
+                "== \"toggled\" and r[\"role\"] != \"main\"))'",
+                folder);
     assert_string_equal(result->err, "");
-    assert_int_equal(result->status, 0);
+    assert_string_equal(result->out, "[('catch', 16), ('null', 16)]\n");
+    assert_null(strstr(check(HEAD SCENES "blocks:\n" TOGGLE, "--counts 4")->out, "role"));
+}
+
+// What modes refuse together has the place of the option, or of the block whose factor comes to it.
+static void what_disagrees_has_its_place(void **state)
+{
+    (void)state;
+    refused(
+        HEAD SCENES "blocks:\n" TOGGLE "  factors: {fovea_deg: [10, 30]}\n", "",
+        "fovstudy: p.yaml:20:3: periphery_deg of mode 'time_warped' is 30; it must be more than fovea_deg, 30; "
+        "block 'main' comes to that\n");
+    write_file("q.yaml", HEAD SCENES "blocks:\n" TOGGLE);
+    const struct command_result *result = command(
+        "cd '%s' && sed -i 's/mode: time_warped/&, fovea_deg: 40/' q.yaml && fovstudy check q.yaml", folder);
+    assert_int_equal(result->status, 1);
+    assert_string_equal(result->err,
+                        "fovstudy: q.yaml:9:3: periphery_deg of mode 'time_warped' is 30; it must be more "
+                        "than fovea_deg, 40\n");
 }
 
 // What the Python expression says of the JSON, `c`.
@@ -273,6 +298,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_kind_is_told),
+        cmocka_unit_test(what_disagrees_has_its_place),
         cmocka_unit_test(the_calibration_studys_figures),
         cmocka_unit_test(repeated_choices_count_people),
         cmocka_unit_test(carry_over_is_counted),

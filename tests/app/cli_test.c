@@ -67,6 +67,24 @@ static void wrong_usage_is_exit_2(void **state)
         {"fovstudy run a.yaml --db x.db --participant p --attribute age", "age"},
         {"fovstudy run a.yaml --db x.db --participant p --display headless", "--observer"},
         {"fovstudy run a.yaml --db x.db --participant p --display none", "--observer"},
+        {"fovstudy run a.yaml --db x.db --participant 'Anna M\xc3\xbcller'", "no code for a participant"},
+        {"fovstudy run a.yaml --db x.db --participant p/1", "no code for a participant"},
+        {"fovstudy run a.yaml --db x.db --participant p12345678901234567890123456789012", "1 to 32"},
+        {"fovstudy check a.yaml --participant 'Anna M'", "no code for a participant"},
+        {"fovstudy check a.yaml --participant=", "no code for a participant"},
+        {"fovstudy run a.yaml --db x.db --participant p --display none --observer person", "person"},
+        {"fovstudy run a.yaml --db x.db --participant p --display none --observer sim:threshold=-1",
+         "threshold"},
+        {"fovstudy run a.yaml --db x.db --participant p --display none --observer sim:luck=1",
+         "'luck' is not known"},
+        {"fovstudy resume --db x.db --observer sim:luck=1", "'luck' is not known"},
+        {"fovstudy resume --db x.db --again", "--again"},
+        {"fovstudy resume --db x.db --new-protocol", "--new-protocol"},
+        {"fovstudy resume --db x.db --participants 3", "--participants"},
+        {"fovstudy run a.yaml --db x.db --participant p --protocol -", "--protocol"},
+        {"fovstudy run '" SOURCE_DIR "/studies/protocols/short.yaml' --db no-such-folder/x.db --participant p "
+         "--attribute shoe=44",
+         "shoe"},
         {"fovstudy strip --scene town --out x.png", "--modes"},
         {"fovstudy strip --modes vrs regular --scene town", "--out"},
         {"fovstudy strip --modes regular --out x.png", "--scene"},
@@ -91,6 +109,16 @@ static void help_is_exit_0(void **state)
         assert_int_equal(result->status, 0);
         assert_true(strlen(result->out) > 10 && !result->err[0]);
     }
+    // Each lists what it takes and nothing else.
+    static const char *const run_only[] = {"--participants", "--again", "--new-protocol"};
+    char text[COMMAND_TEXT];
+    strcpy(text, command("fovstudy resume --help")->out);
+    assert_non_null(strstr(text, "  --protocol "));
+    for (size_t i = 0; i < sizeof run_only / sizeof run_only[0]; i++) {
+        assert_null(strstr(text, run_only[i]));
+        assert_non_null(strstr(command("fovstudy run --help")->out, run_only[i]));
+    }
+    assert_null(strstr(command("fovstudy run --help")->out, "  --protocol "));
 }
 
 static void tables_are_valid_json(void **state)
@@ -185,12 +213,13 @@ static void run_refuses_before_it_writes(void **state)
     } cases[] = {
         {"--display none --observer sim", "measured"},
         {"--display none --observer sim:errors=/no/such/file", "/no/such/file"},
-        {"--display none --observer person", "person"},
-        {"--display none --observer sim:threshold=-1", "threshold"},
-        {"--display none --observer sim:luck=1", "luck"},
+        {"--display none --observer sim --scene atrium=town:trees=5", "trees=5"},
+        {"--display none --observer sim --scene atrium=/no/such.glb", "/no/such.glb cannot be opened"},
+        {"--display none --observer sim --scene atrium=cathedral", "'cathedral' is not known"},
+        {"--display none --observer sim --scene atrium=/", "/ is a folder; name a .gltf or .glb file"},
+        {"--display none --observer sim --scene atrium=/no/such", "/no/such cannot be opened"},
         {"--display telepathy --observer sim", "telepathy"},
         {"--display headless:3 --observer sim", "headless"},
-        {"--display headless --observer sim --attribute shoe=44", "shoe"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         expect(command(RUN_SHORT "--db '%s/none.db' %s", folder, cases[i].options), 1, cases[i].about);
@@ -209,6 +238,10 @@ static void a_session_runs_without_frames(void **state)
         RUN_SHORT "--db '%s/errors.db' --display none --observer sim:errors=%s/errors.csv --events -";
     command("printf 'atrium,0.03,time_warped:epsilon=0.2\\n' > '%s/errors.csv'", folder);
     expect(command(run, folder, folder), 1, "0.05"); // the other option is missing
+    expect(
+        command(run, folder, folder), 1,
+        "errors.csv nor the study file holds the error of time_warped:epsilon=0.05 on 'atrium'; add the line "
+        "'atrium,ERROR,time_warped:epsilon=0.05'");
     command("printf '# better\\natrium,0.02,time_warped:epsilon=0.05\\n' >> '%s/errors.csv'", folder);
     result = command(run, folder, folder);
     assert_string_equal(result->err, "");
@@ -222,6 +255,10 @@ static void a_session_runs_without_frames(void **state)
                 folder);
     assert_string_equal(result->out, "2|1|0|complete\n");
     expect(command(run, folder, folder), 1, "p"); // the same code again
+    command("printf 'atrium,0.5,time_warped\\natrium,1.5,regular\\n' > '%s/errors.csv'", folder);
+    expect(command("cd '%s' && " RUN_SHORT "--db other.db --display none --observer sim:errors=errors.csv",
+                   folder),
+           1, "errors.csv:2: '1.5' is no error; it is a number from 0 to 1");
     command("printf 'atrium,bad,regular\\n' > '%s/errors.csv'", folder);
     expect(
         command(
@@ -229,6 +266,74 @@ static void a_session_runs_without_frames(void **state)
             "--observer sim:errors=%s/errors.csv",
             SOURCE_DIR, folder, folder),
         1, "errors.csv:1");
+}
+
+// One file is one study: another text is refused before a row is written, unless it was asked for.
+static void a_file_keeps_its_protocol(void **state)
+{
+    (void)state;
+#define HERE "cd '%s' && fovstudy run %s --db one.db --display none --observer sim:errors=one.csv "
+    const char *rows =
+        "sqlite3 '%s/one.db' \"SELECT (SELECT count(*) FROM participant), (SELECT count(*) FROM session), "
+        "(SELECT count(*) FROM protocol), (SELECT count(*) FROM event WHERE kind = 'new_protocol')\"";
+    command("printf 'atrium,0.03,time_warped\\natrium,0.02,time_warped:epsilon=0.05\\n' > '%s/one.csv'",
+            folder);
+    command("cp '" SOURCE_DIR "/studies/protocols/short.yaml' '%s/one.yaml'", folder);
+    assert_int_equal(command(HERE "--participant p1", folder, "one.yaml")->status, 0);
+    write_protocol("text.yaml", "seed: 1", "seed: 1 # as before");
+    write_protocol("name.yaml", "^name: short", "name: longer");
+    expect(command(HERE "--participant p2", folder, "text.yaml"), 1,
+           "one.db: its sessions are of protocol 'short' with another text (");
+    expect(command(HERE "--participant p2", folder, "text.yaml"), 1, "give another --db, or --new-protocol");
+    expect(command(HERE "--participant p2", folder, "name.yaml"), 1,
+           "one.db: its sessions are of another protocol, 'short', and name.yaml is 'longer'");
+    assert_string_equal(command(rows, folder)->out, "1|1|1|0\n");
+    assert_int_equal(command(HERE "--participant p2 --new-protocol", folder, "text.yaml")->status, 0);
+    assert_string_equal(command(rows, folder)->out, "2|2|2|1\n");
+    // Both are the file's now.
+    assert_int_equal(command(HERE "--participant p3", folder, "one.yaml")->status, 0);
+    assert_int_equal(command(HERE "--participant p4", folder, "text.yaml")->status, 0);
+    expect(command(HERE "--participant p5", folder, "name.yaml"), 1, "is 'longer'");
+    assert_string_equal(command(rows, folder)->out, "4|4|2|1\n");
+}
+
+// `--participants N` goes on where it stopped: complete ones stay, an unfinished one is named.
+static void participants_are_filled_up(void **state)
+{
+    (void)state;
+    const char *fill =
+        "cd '%s' && fovstudy run one.yaml --db many.db --display none --observer sim:errors=one.csv "
+        "--participants %d %s";
+    const char *sessions =
+        "sqlite3 '%s/many.db' \"SELECT group_concat(code || ' ' || status, ', ') FROM (SELECT code, "
+        "status FROM session s JOIN participant p ON p.id = participant_id ORDER BY s.id)\"";
+    assert_int_equal(command(fill, folder, 2, "")->status, 0);
+    const struct command_result *result = command(fill, folder, 4, "");
+    assert_int_equal(result->status, 0);
+    assert_string_equal(result->err, "fovstudy: 2 of 4 participants are complete and passed over\n");
+    assert_string_equal(command(sessions, folder)->out,
+                        "S001 complete, S002 complete, S003 complete, S004 complete\n");
+    result = command(fill, folder, 4, "");
+    assert_int_equal(result->status, 0);
+    assert_string_equal(result->err, "fovstudy: 4 of 4 participants are complete and passed over\n");
+    // Those of another protocol are not complete in this one.
+    expect(
+        command("cd '%s' && fovstudy run text.yaml --db many.db --display none --observer sim:errors=one.csv "
+                "--participants 4",
+                folder),
+        1, "with another text (");
+    command("sqlite3 '%s/many.db' \"UPDATE session SET status = 'running', ended_at = NULL WHERE id = 3\"",
+            folder);
+    result = command(fill, folder, 5, "");
+    assert_int_equal(result->status, 1);
+    assert_non_null(strstr(result->err, "fovstudy: 3 of 5 participants are complete and passed over\n"));
+    assert_non_null(strstr(result->err, "session 3 is unfinished: fovstudy resume --db 'many.db' 3"));
+    assert_non_null(strstr(result->err, "stopped at participant S003 of 5\n"));
+    assert_int_equal(command("cd '%s' && fovstudy resume --db many.db", folder)->status, 0);
+    assert_int_equal(command(fill, folder, 5, "")->status, 0);
+    assert_string_equal(
+        command("sqlite3 '%s/many.db' \"SELECT count(*), sum(status = 'complete') FROM session\"", folder)->out,
+        "5|5\n");
 }
 
 static int set_up(void **state)
@@ -249,6 +354,8 @@ int main(void)
         cmocka_unit_test(protocol_mistakes_have_their_place),
         cmocka_unit_test(run_refuses_before_it_writes),
         cmocka_unit_test(a_session_runs_without_frames),
+        cmocka_unit_test(a_file_keeps_its_protocol),
+        cmocka_unit_test(participants_are_filled_up),
     };
     return cmocka_run_group_tests(tests, set_up, NULL);
 }

@@ -66,7 +66,7 @@ SELECT 'steps of another size', count(*) FROM (SELECT value - lag(value) OVER (P
 -- Staircases: what was shown is what was answered about.
 CREATE TEMP VIEW step AS SELECT s.*, t.block, t.test_slot, c.parameters ->> 'epsilon' AS shown FROM staircase_step s
 JOIN trial t ON t.id = s.trial_id JOIN condition c ON c.id = CASE test_slot WHEN 'a' THEN option_a ELSE option_b END;
-SELECT 'levels', count(*) FROM step WHERE abs(level - shown) > 1e-8;
+SELECT 'levels', count(*) FROM step WHERE typeof(shown) <> 'real' OR level <> shown;
 SELECT 'steps', count(*) FROM trial t WHERE kind = 'staircase'
 AND (status = 'done') <> (SELECT count(*) FROM staircase_step WHERE trial_id = t.id);
 SELECT 'outcomes', count(*) FROM step s LEFT JOIN choice c ON c.trial_id = s.trial_id LEFT JOIN rating r ON r.trial_id = s.trial_id

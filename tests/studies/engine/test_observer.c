@@ -205,14 +205,14 @@ static void test_parsing(void **state)
     assert_string_equal(error, "");
     bad("person", "observer 'person' is not known; it is sim or sim:name=value,...");
     bad("sim:lapze=0", "observer: parameter 'lapze' is not known; did you mean 'lapse'?");
-    bad("sim:qqqqqq=0", "observer: parameter 'qqqqqq' is not known; see fovstudy run --help");
+    bad("sim:qqqqqq=0", "observer: parameter 'qqqqqq' is not known; the help lists them");
     bad("sim:lapse", "observer: 'lapse' has no value; write name=value");
     bad("sim:lapse=", "observer: lapse is a number, not ''");
     bad("sim:lapse=nan", "observer: lapse is a number, not 'nan'");
     bad("sim:lapse=1.5", "observer: lapse is 1.5; it must lie between 0 and 1");
     bad("sim:threshold=0", "observer: threshold is 0; it must lie between 1e-09 and 1e+09");
     bad("sim:lapse=0,", "observer: '' has no value; write name=value");
-    bad("sim:errors=", "observer: errors names a file by at most 255 characters");
+    bad("sim:errors=", "observer: errors names a file by 1 to 255 characters");
 }
 
 static void test_the_code_makes_the_observer(void **state)

@@ -317,6 +317,32 @@ static void test_tables_and_counts(void **state)
     protocol_destroy(protocol);
 }
 
+// Without its texts a plan is the same plan.
+static void test_bare(void **state)
+{
+    (void)state;
+    char error[PROTOCOL_ERROR] = "";
+    struct protocol *protocol = sample_design("[atrium, town]", SAMPLE_NINE, error, sizeof error);
+    for (uint32_t number = 0; number < 40; number++) {
+        struct plan *whole = plan_create(protocol, 3, number), *bare = plan_create_bare(protocol, 3, number);
+        assert_int_equal(whole->trial_count, bare->trial_count);
+        assert_int_equal(whole->condition_count, bare->condition_count);
+        for (uint32_t i = 0; i < whole->trial_count; i++) {
+            const struct plan_trial *a = &whole->trials[i], *b = &bare->trials[i];
+            assert_true(a->settings[0] && !b->settings[0]);
+            assert_string_equal(a->factors, b->factors);
+            assert_string_equal(a->scene, b->scene);
+            assert_memory_equal(a->option, b->option, sizeof a->option);
+            assert_true(a->block == b->block && a->cell == b->cell && a->repetition == b->repetition &&
+                        a->role == b->role && a->test_slot == b->test_slot &&
+                        a->first_shown == b->first_shown && a->seed == b->seed);
+        }
+        plan_destroy(whole);
+        plan_destroy(bare);
+    }
+    protocol_destroy(protocol);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -328,6 +354,7 @@ int main(void)
         cmocka_unit_test(test_fixed_order_and_listed_trials),
         cmocka_unit_test(test_a_plan_depends_on_its_keys_only),
         cmocka_unit_test(test_tables_and_counts),
+        cmocka_unit_test(test_bare),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

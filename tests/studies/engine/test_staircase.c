@@ -273,12 +273,14 @@ static void test_contradictions_of_quest_plus(void **state)
     BAD(good, d.model.threshold.max = -3, "the grid of threshold has 41 values; min -2.5 must be below max -3");
     BAD(good, d.model.threshold.max = (double)INFINITY,
         "the grid of threshold goes from -2.5 to inf; both must be finite");
-    BAD(good, d.model.threshold.count = 1, "the grid of threshold has one value but goes from -2.5 to 2.5");
+    BAD(good, d.model.threshold.count = 1,
+        "the grid of threshold has one value but goes from -2.5 to 2.5; give it a 'count' of 2 or more");
     BAD(good, d.model.guess.min = -0.1, "the grid of guess goes from -0.1 to 0.5; it must lie between 0 and 1");
     BAD(good, d.model.lapse.max = 1.5, "the grid of lapse goes from 0 to 1.5; it must lie between 0 and 1");
     BAD(good, d.model.lapse.max = 0.5,
         "guess up to 0.5 and lapse up to 0.5 leave nothing to the level; their sum must be below 1");
-    BAD(good, d.level.count = 1, "the grid of level has one value but goes from -3 to 3");
+    BAD(good, d.level.count = 1,
+        "the grid of level has one value but goes from -3 to 3; give it a 'count' of 2 or more");
     BAD(good, d.model.family = quest_plus_find_family("weibull"),
         "levels begin at -3 and thresholds at -2.5; on a logarithmic axis (weibull) both are above 0");
     BAD(good, d.threshold = 2, "threshold 2 is not there; 2 outcomes have 1");

@@ -131,6 +131,10 @@ static void test_people(void **state)
         {"participants: 8\n" SETTINGS BLOCK GROUPS, ""},
         {"participants: 8\n" SETTINGS BLOCK "  order: latin\n  factors: {epsilon: [0.1, 0.2, 0.3]}\n",
          "p:20:3: carry-over in block 'main' is balanced for each 6 participants; 8 are no multiple of it"},
+        {"participants: 8\n" SETTINGS BLOCK "  order: latin\n  null: 1\n  factors: {epsilon: [0.1, 0.2]}\n",
+         "p:20:3: carry-over in block 'main' is not balanced exactly: null and catch trials come between its "
+         "cells"},
+        {"participants: 8\n" SETTINGS BLOCK "  null: 1\n  factors: {epsilon: [0.1, 0.2]}\n", ""},
     };
     expect_remarks(cases, sizeof cases / sizeof cases[0]);
 }

@@ -222,7 +222,7 @@ static void test_values(void **state)
         {"", "seed: 7", "seed: 7.5", "p.yaml:4:7: seed is a whole number, not '7.5'"},
         {"", "seed: 7", "seed:", "p.yaml:4:1: seed has no value; give a whole number"},
         {"", "fovstudy: 1", "fovstudy: 2",
-         "p.yaml:1:11: fovstudy (the version of the protocol language) is 2; it must lie between 1 and 1"},
+         "p.yaml:1:11: fovstudy (the version of the protocol language) is 2; it must be 1"},
         {"", "name: good", "name: a b", "p.yaml:2:7: name 'a b' is not a name; use letters, digits, _ and -"},
         {"", "scale: [1, 10]", "scale: [10, 1]",
          "p.yaml:12:32: scale ends at 1, below its begin 10; swap them"},
@@ -230,7 +230,7 @@ static void test_values(void **state)
          "p.yaml:12:32: scale is a list; write [..., ...] or one '- ' line each"},
         {"", "[0.2, 0.1]", "[0.2, 2]", "p.yaml:29:22: time_warped.epsilon is 2; it must lie between 0 and 1"},
         {"", "[0.2, 0.1]", "[0.2, 0.20]", "p.yaml:29:22: level 0.20 of 'epsilon' stands here twice; keep one"},
-        {"", "[0.2, 0.1]", "[]", "p.yaml:29:16: levels has 0 entries; it takes 1 to 16"},
+        {"", "[0.2, 0.1]", "[]", "p.yaml:29:16: factor 'epsilon' has 0 entries; it takes 1 to 16"},
         {"", "[atrium, town]", "[atrium, atrium]", "p.yaml:5:18: scene 'atrium' stands here twice; keep one"},
         {"settings", "camera: path", "fade: {gray_s: 11}",
          "p.yaml:15:27: gray_s is 11; it must lie between 0 and 10"},
@@ -253,7 +253,7 @@ static void test_structure(void **state)
         {"", "consent: {version: 1, text: Agree?}", "consent: yes",
          "p.yaml:14:10: consent is a mapping; write 'key: value' below it"},
         {"main", "[foveated, regular]", "[foveated]",
-         "p.yaml:27:14: options of a toggle block has 1 entries; it takes 2 to 2"},
+         "p.yaml:27:14: options of a toggle block has 1 entry; it takes 2"},
         {"main", "[foveated, regular]", "[regular, regular]",
          "p.yaml:27:24: option 'regular' stands here twice; keep one"},
         {"", "name: main", "name: before", "p.yaml:25:11: block 'before' stands here twice; rename one"},
@@ -262,7 +262,7 @@ static void test_structure(void **state)
         {"", "camera: path, question: prefer", "camera: path",
          "p.yaml:25:5: block 'main' asks no question; set 'question' in its settings"},
         {"before", "question: quality", "question: prefer",
-         "p.yaml:21:5: block 'before' rates, but question 'prefer' has no 'scale'; add one"},
+         "p.yaml:21:5: block 'before' rates, but question 'prefer' has no 'scale'; add one, or ask another"},
         {"", "question: prefer", "question: quality",
          "p.yaml:25:5: block 'main' lets one choose, but question 'quality' has a scale; ask another"},
         {"after", "[foveated, regular]", "[regular, foveated]",
@@ -282,6 +282,76 @@ static void test_structure(void **state)
          "p.yaml:30:7: factor 'fovea' varies the same as 'epsilon'; keep one"},
         {"", "type: integer, min: 18", "type: choice", "p.yaml:17:5: the attribute has no 'choices'; add them"},
         {"", "type: integer", "type: text", "p.yaml:17:29: min and max are for numbers; remove them"},
+    };
+    expect_all(cases, sizeof cases / sizeof cases[0]);
+}
+
+// Of a staircase: what is missing or too much is said by name, never by a value that nobody wrote.
+static void test_staircases(void **state)
+{
+    (void)state;
+#define STAIRS(keys)                                                                                           \
+    "kind: staircase\n    staircase: {parameter: hole_decay, larger: easier, trials: 10, " keys "}\n"          \
+    "    settings: {question: quality}"
+#define UP_DOWN "level: {min: 0.1, max: 1}, "
+#define QUEST "method: quest_plus, level: {min: 0.1, max: 1, count: 5}, "
+    const struct bad cases[] = {
+        {"main", "kind: toggle", STAIRS("method: weighted, " UP_DOWN "start: 0.5, steps: [0.1]"),
+         "p.yaml:27:16: method 'weighted' has no 'target'; add the share of right answers to settle at, as "
+         "'target: "
+         "0.75'"},
+        {"main", "kind: toggle", STAIRS("method: 1up2down, " UP_DOWN "steps: [0.1]"),
+         "p.yaml:27:16: method '1up2down' has no 'start'; add the first level, as 'start: 0.5'"},
+        {"main", "kind: toggle", STAIRS("method: 1up2down, " UP_DOWN "start: 0.5"),
+         "p.yaml:27:16: method '1up2down' has no 'steps'; add the sizes of its steps, as 'steps: [0.1, 0.05]'"},
+        {"main", "kind: toggle", STAIRS("method: 1up2down, target: 0.7, " UP_DOWN "start: 0.5, steps: [0.1]"),
+         "p.yaml:27:86: method '1up2down' takes no 'target', it settles at 70.7 % right answers; remove it"},
+        {"main", "kind: toggle",
+         STAIRS("method: 1up2down, level: {count: 3, min: 0, max: 1}, start: 0.5, steps: [0.1]"),
+         "p.yaml:27:94: method '1up2down' steps from level to level, so it takes no 'count'; remove it"},
+        {"main", "kind: toggle", STAIRS(QUEST),
+         "p.yaml:27:16: method 'quest_plus' has no 'model'; add the psychometric functions it weighs, with "
+         "family, "
+         "threshold and slope"},
+        {"main", "kind: toggle", STAIRS("start: 0.5, " QUEST "model: {}"),
+         "p.yaml:27:68: method 'quest_plus' takes no 'start'; remove it"},
+        {"main", "kind: toggle", STAIRS("method: quest_plus, model: {}, level: {min: 0.1, max: 1}"),
+         "p.yaml:27:106: method 'quest_plus' chooses among levels; add how many, as 'count: 25'"},
+        {"main", "kind: toggle", "kind: adjust\n    null: 2",
+         "p.yaml:25:5: the adjust block has no 'adjust'; add it"},
+        {"main", "kind: toggle", "kind: staircase\n    null: 2",
+         "p.yaml:25:5: the staircase block has no 'staircase'; add it"},
+        {"main", "kind: toggle",
+         "kind: adjust\n    null: 2\n    adjust: {hole_decay: {start: [0.1, 0.5], step: 0.1}}",
+         "p.yaml:27:5: blocks of kind adjust have no null and catch trials; use them in toggle and sequential "
+         "blocks"},
+    };
+    expect_all(cases, sizeof cases / sizeof cases[0]);
+}
+
+// One value is judged by another that stands in the file, and both are named.
+static void test_ends(void **state)
+{
+    (void)state;
+#define ADJUST(keys) "kind: adjust\n    adjust: {hole_decay: {" keys "}}"
+    const struct bad cases[] = {
+        {"main", "kind: toggle", ADJUST("start: [0.5, 0.2], step: 0.1"),
+         "p.yaml:27:34: start ends at 0.2, below its begin 0.5; swap them"},
+        {"main", "kind: toggle", ADJUST("start: [0.5, 0.5], step: 0.1, min: 0.6, max: 0.4"),
+         "p.yaml:27:72: max is 0.4, and min 0.6; it must be above min"},
+        {"main", "kind: toggle", ADJUST("start: [0.5, 0.5], step: 5"),
+         "p.yaml:27:52: step is 5; from min to max it is only 1"},
+        {"", "min: 18", "min: 18, max: 9", "p.yaml:17:46: max is 9, below min 18; swap them"},
+        {"main", "    factors:\n", "    catch: {count: 1, option: regular}\n    factors:\n",
+         "p.yaml:28:12: block 'main' has a catch trial whose two options are the same; name an option, or "
+         "parameters of "
+         "it, that differ obviously"},
+        {"main", "    factors:\n", "    trials:\n    factors:\n",
+         "p.yaml:28:5: a block has either factors or trials; remove one"},
+        {"", "scenes: [atrium, town]",
+         "scenes:", "p.yaml:5:1: scenes has no value; write [..., ...] or one '- ' line each"},
+        {"", "{version: 1, text: Agree?}", "",
+         "p.yaml:14:1: consent has no value; write 'key: value' below it"},
     };
     expect_all(cases, sizeof cases / sizeof cases[0]);
 }
@@ -395,6 +465,8 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_prerendered),
         cmocka_unit_test(test_values),
         cmocka_unit_test(test_structure),
+        cmocka_unit_test(test_staircases),
+        cmocka_unit_test(test_ends),
         cmocka_unit_test(test_yaml),
         cmocka_unit_test(test_empty_and_not_text),
         cmocka_unit_test(test_limits),

@@ -1,0 +1,112 @@
+#include "app/fovstudy/run_file.h"
+
+#include "studies/store/read.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { SHA256_SHOWN = 12 }; // digits, as `fovstudy check` shows them
+
+// The protocols of a file's sessions against the one that is to run.
+struct protocols {
+    const struct protocol *wanted;
+    bool found, same_name;
+    char name[PROTOCOL_NAME],
+        sha256[SHA256_HEX]; // of the last one; of one with the wanted name, where there is
+};
+
+static bool take_protocol(void *user, const struct store_session_row *row)
+{
+    struct protocols *protocols = user;
+    bool same_name = strcmp(row->protocol_name, protocols->wanted->name) == 0;
+    protocols->found = strcmp(row->protocol_sha256, protocols->wanted->sha256_hex) == 0;
+    if (same_name || !protocols->same_name) {
+        snprintf(protocols->name, sizeof protocols->name, "%s", row->protocol_name);
+        snprintf(protocols->sha256, sizeof protocols->sha256, "%s", row->protocol_sha256);
+    }
+    protocols->same_name = protocols->same_name || same_name;
+    return !protocols->found;
+}
+
+static void say_difference(const struct run_options *options, const struct protocols *protocols, char *error,
+                           size_t error_size)
+{
+    const struct protocol *wanted = protocols->wanted;
+    static const char way[] =
+        "one file is one study: give another --db, or --new-protocol to keep both in this "
+        "file, which is logged";
+    if (protocols->same_name)
+        snprintf(error, error_size,
+                 "%s: its sessions are of protocol '%s' with another text (%.*s) than %s has now (%.*s); %s",
+                 options->database, protocols->name, SHA256_SHOWN, protocols->sha256, options->protocol,
+                 SHA256_SHOWN, wanted->sha256_hex, way);
+    else
+        snprintf(error, error_size, "%s: its sessions are of another protocol, '%s', and %s is '%s'; %s",
+                 options->database, protocols->name, options->protocol, wanted->name, way);
+}
+
+bool run_file_protocol(const struct run_options *options, const struct protocol *protocol, char *error,
+                       size_t error_size)
+{
+    struct protocols protocols = {.wanted = protocol};
+    struct store_reader *reader = store_reader_open(options->database, error, error_size);
+    if (!reader)
+        return false;
+    bool read = store_read_sessions(reader, take_protocol, &protocols) || protocols.found;
+    if (!read)
+        snprintf(error, error_size, "%s", store_reader_error(reader));
+    store_reader_close(reader);
+    if (!read || protocols.found || !protocols.name[0])
+        return read;
+    say_difference(options, &protocols, error, error_size);
+    return false;
+}
+
+void run_file_code(uint64_t i, char out[RUN_CODE])
+{
+    snprintf(out, RUN_CODE, "S%03" PRIu64, i);
+}
+
+// Of each code whether it has a complete session, and one that is not.
+struct codes {
+    uint64_t count;
+    bool *complete;
+    bool unfinished[RUN_PARTICIPANTS + 1];
+};
+
+static bool take_code(void *user, const struct store_session_row *row)
+{
+    struct codes *codes = user;
+    char code[RUN_CODE];
+    uint64_t i = 1;
+    for (; i <= codes->count; i++) {
+        run_file_code(i, code);
+        if (strcmp(code, row->code) == 0)
+            break;
+    }
+    if (i > codes->count)
+        return true;
+    bool complete = strcmp(row->status, "complete") == 0;
+    codes->unfinished[i] = codes->unfinished[i] || !complete;
+    codes->complete[i] = !codes->unfinished[i];
+    return true;
+}
+
+uint64_t run_file_complete(const struct run_options *options, bool out_complete[RUN_PARTICIPANTS + 1])
+{
+    char unused[256];
+    struct codes codes = {.count = options->participants, .complete = out_complete};
+    memset(out_complete, 0, (RUN_PARTICIPANTS + 1) * sizeof *out_complete);
+    struct store_reader *reader = access(options->database, F_OK) == 0
+                                      ? store_reader_open(options->database, unused, sizeof unused)
+                                      : NULL;
+    if (reader && !store_read_sessions(reader, take_code, &codes))
+        memset(out_complete, 0, (RUN_PARTICIPANTS + 1) * sizeof *out_complete);
+    store_reader_close(reader);
+    uint64_t found = 0;
+    for (uint64_t i = 1; i <= options->participants; i++)
+        found += out_complete[i];
+    return found;
+}
