@@ -86,6 +86,8 @@ struct stat_marginal stat_grid_marginal(const double *density, double low, doubl
     const double none = (double)NAN;
     struct stat_marginal m = {none, none, none, {none, none}};
     double mass = 0, mean = 0, square = 0;
+    if (points < 2)
+        return m;
     for (size_t i = 0; i < points; i++) {
         double x = stat_grid_at(low, high, points, i);
         mass += density[i];

@@ -12,7 +12,8 @@ void stat_gauss_legendre(size_t count, double x[], double w[]);
 double stat_grid_at(double low, double high, size_t points, size_t i);
 
 // Of densities at even points, cubics between them. exponential: the points are logarithms; mean and sd are
-// then those of their exponentials, and so are the quantiles. NaN for no mass or no memory.
+// then those of their exponentials, and so are the quantiles. NaN for fewer than two points, no mass or
+// no memory.
 struct stat_marginal stat_grid_marginal(const double *density, double low, double high, size_t points,
                                         double conf, bool exponential);
 
