@@ -12,6 +12,8 @@ static const struct {
     {"unpaired_t rating order", "Ratings"}, {"paired_t rating order", "Ratings"},
     {"paired_t rating cell", "Ratings"},    {"anova rating factor", "Ratings"},
     {"paired_t rating factor", "Ratings"},  {"mean rating factor", "Ratings"},
+    {"mean adjusted study", "Adjusted values"},
+    {"mean threshold study", "Thresholds"},
 };
 
 static const char *answer_of(const char *plan)

@@ -43,7 +43,6 @@ struct report {
     struct report_tests all, stricter; // without any exclusion; with those of the set 'stricter' too
     struct figure_pair choices_figure, frames_figure, ratings_figures[REPORT_QUESTIONS],
         factorial_figures[REPORT_QUESTIONS], likert_figures[REPORT_QUESTIONS];
-    struct figure_pair choices_figure, frames_figure, ratings_figures[REPORT_QUESTIONS];
     struct figure_pair threshold_figures[REPORT_STAIRCASES], adjusted_figure;
 };
 
