@@ -8,12 +8,11 @@
 static const struct {
     const char *plan, *section; // as store_session_row has plans
 } answers[] = {
-    {"binomial choice cell", "Choices"},    {"mean toggles study", "Toggles before answering"},
-    {"unpaired_t rating order", "Ratings"}, {"paired_t rating order", "Ratings"},
-    {"paired_t rating cell", "Ratings"},    {"anova rating factor", "Ratings"},
-    {"paired_t rating factor", "Ratings"},  {"mean rating factor", "Ratings"},
-    {"mean adjusted study", "Adjusted values"},
-    {"mean threshold study", "Thresholds"},
+    {"binomial choice cell", "Choices"},       {"mean toggles study", "Toggles before answering"},
+    {"unpaired_t rating order", "Ratings"},    {"paired_t rating order", "Ratings"},
+    {"paired_t rating cell", "Ratings"},       {"anova rating factor", "Ratings"},
+    {"paired_t rating factor", "Ratings"},     {"mean rating factor", "Ratings"},
+    {"mean adjusted cell", "Adjusted values"}, {"mean threshold cell", "Thresholds"},
 };
 
 static const char *answer_of(const char *plan)

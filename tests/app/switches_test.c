@@ -116,7 +116,7 @@ static int set_up(void **state)
         return -1;
     const struct command_result *result =
         command("fovstudy run '%s' --db '%s/a.db' --participant p1 --observer "
-                "sim:dwell_s=3,dwell_spread=0.1,toggles_mean=3 --display headless --size 64x72 --refresh 30 "
+                "sim:dwell_s=3,dwell_spread=0.1,toggles_mean=5 --display headless --size 64x72 --refresh 30 "
                 "--scene atrium=town:triangles=20000",
                 path, folder);
     if (result->status != 0)
