@@ -57,6 +57,10 @@ static bool add_value(void *user, const struct store_adjusted_row *row)
         a->excluded++;
         return true;
     }
+    if (!isfinite(row->value)) {
+        a->not_done++; // which no program of ours writes
+        return true;
+    }
     struct adjusted_cell *cell = find_cell(f, row);
     struct adjusted_person *p = cell ? find_person(cell, f->sample->sessions[session].person) : NULL;
     if (!p)

@@ -36,6 +36,9 @@ static const char *make_label(const struct choice_cell *cell, struct sample *sam
         snprintf(label, sizeof label, "%s or %s",
                  cell->test == SAMPLE_NONE ? "?" : sample->conditions[cell->test].label,
                  cell->reference == SAMPLE_NONE ? "?" : sample->conditions[cell->reference].label);
+    size_t used = strlen(label);
+    if (cell->right)
+        snprintf(label + used, sizeof label - used, ", right answers");
     return sample_keep(sample, label);
 }
 
@@ -46,14 +49,15 @@ static struct choice_cell *find_cell(struct filling *f, const struct store_trial
     size_t reference = sample_find_condition(f->sample, f->file, row->reference_id);
     for (size_t i = 0; i < c->cell_count; i++) {
         struct choice_cell *cell = &c->cells[i];
-        if (cell->test == test && cell->reference == reference && strcmp(cell->block, row->block) == 0 &&
-            strcmp(cell->factors, row->factors) == 0)
+        if (cell->test == test && cell->reference == reference && cell->right == (row->correct >= 0) &&
+            strcmp(cell->block, row->block) == 0 && strcmp(cell->factors, row->factors) == 0)
             return cell;
     }
     struct choice_cell cell = {.block = sample_keep(f->sample, row->block),
                                .factors = sample_keep(f->sample, row->factors),
                                .test = test,
-                               .reference = reference};
+                               .reference = reference,
+                               .right = row->correct >= 0};
     if (!cell.block || !cell.factors || !sample_grow(&c->cells, c->cell_count, sizeof c->cells[0]))
         return NULL;
     set_levels(&cell, f->sample);
@@ -94,9 +98,10 @@ static bool add_answer(struct choice_cell *cell, const struct store_trial_row *r
     cell->answers++;
     cell->equal += row->chosen == '=';
     cell->n += row->chosen != '=';
-    cell->chosen += row->chosen == 't';
+    const bool counted = row->chosen != '=' && (cell->right ? row->correct == 1 : row->chosen == 't');
+    cell->chosen += counted;
     counts->n += row->chosen != '=';
-    counts->k += row->chosen == 't';
+    counts->k += counted;
     return true;
 }
 
@@ -127,6 +132,7 @@ static bool add_trial(void *user, const struct store_trial_row *row)
     if (!cell || !add_answer(cell, row, f->sample->sessions[session].person))
         return false;
     c->answers++;
+    c->equal += row->chosen == '=';
     c->chosen_first += row->chosen_first;
     c->chosen_a += row->chosen_a;
     return true;
@@ -199,13 +205,15 @@ static bool finish(struct choices *c, const struct choices_desc *desc)
         finish_cell(cell, desc);
         c->several = c->several || cell->several;
         c->one_each = c->one_each || (cell->n > 0 && !cell->several);
-        c->tested += cell->n > 0;
+        c->tested += isnan(cell->p_value) ? 0 : 1; // as Holm's procedure counts them
     }
     finish_totals(c, values, total);
     finish_holm(c, values);
     free(values);
     if (c->cell_count > 1)
         qsort(c->cells, c->cell_count, sizeof c->cells[0], by_levels);
+    for (size_t i = 0; i < c->cell_count; i++)
+        c->cells[i].name_block = strcmp(c->cells[0].block, c->cells[c->cell_count - 1].block) != 0;
     return choices_contrast(c);
 }
 

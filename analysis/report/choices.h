@@ -3,7 +3,8 @@
 // A cell is one combination of block, factor levels and the two options compared. Counted are answers to trials
 // of the kinds toggle and sequential that are done and not excluded: cells that the protocol planned. Test and
 // reference are told apart through the store's test slot, whatever the sides were. Answers "equal" are counted
-// apart and are not part of n.
+// apart and are not part of n. Of questions with a right answer the right ones are counted, in cells of their
+// own.
 //
 // The test follows the data. Where nobody answered more than once, answers are independent however people
 // differ: the exact binomial test, with Clopper and Pearson's interval. Where somebody did, people are what is
@@ -37,6 +38,8 @@ struct choice_cell {
     struct choice_level levels[CHOICE_LEVELS];
     size_t level_count;
     const char *label; // its levels, or its options where there are none
+    bool right;        // the question has a right answer: `chosen` counts those, not preferences
+    bool name_block;   // other cells are of other blocks
     int64_t n, chosen; // without "equal"; for the test option
     int64_t equal;
     bool several; // somebody answered more than once
@@ -89,14 +92,14 @@ struct choices {
     struct choice_cell *cells; // by block, then levels: numbers falling, words rising
     size_t contrast_count;
     struct choice_contrast *contrasts;
-    int64_t answers; // in all cells, "equal" too
+    int64_t answers, equal; // in all cells; of them "equal"
     int64_t chosen_first, chosen_a;
     struct stat_moments toggles; // over all such answers
     double reaction_median_s;
     // Left out, by the first reason that holds:
     int64_t not_done, excluded, no_test_slot, other_kinds;
     bool one_each, several; // any cell with answers of that kind
-    size_t tested;          // cells with an answer: what Holm's p is adjusted for
+    size_t tested;          // cells with a p: what Holm's p is adjusted for
 };
 
 // False with a sentence. No answer at all is not an error here: cell_count is 0.

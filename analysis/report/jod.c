@@ -79,15 +79,18 @@ static bool add_trial(void *user, const struct store_trial_row *row)
     return true;
 }
 
-static void set_people(struct jod_block *block)
+static bool set_people(struct jod_block *block)
 {
-    for (size_t i = 0; i < block->answer_count; i++) {
-        const struct stat_preference *a = &block->answers[i];
-        bool known = false;
-        for (size_t j = 0; j < i && !known; j++)
-            known = a->person == block->answers[j].person;
-        block->persons += !known;
+    size_t last = 0;
+    for (size_t i = 0; i < block->answer_count; i++)
+        last = block->answers[i].person > last ? block->answers[i].person : last;
+    bool *known = calloc(last + 1, sizeof *known);
+    for (size_t i = 0; known && i < block->answer_count; i++) {
+        block->persons += !known[block->answers[i].person];
+        known[block->answers[i].person] = true;
     }
+    free(known);
+    return known != NULL;
 }
 
 static void set_order(struct jod_block *block, const struct sample *sample)
@@ -112,15 +115,15 @@ static bool scale(struct jod_block *block, const struct sample *sample, double c
     for (size_t i = 1; i < block->option_count; i++)
         if (block->scores[i].n > block->scores[block->reference].n)
             block->reference = i;
-    set_people(block);
+    bool ok = set_people(block);
     set_order(block, sample);
-    return stat_jod_scale(block->answers, block->answer_count,
-                          &(struct stat_jod_desc){.options = block->option_count,
-                                                  .reference = block->reference,
-                                                  .conf = conf,
-                                                  .replicates = replicates,
-                                                  .seed = seed},
-                          block->scores);
+    return ok && stat_jod_scale(block->answers, block->answer_count,
+                                &(struct stat_jod_desc){.options = block->option_count,
+                                                        .reference = block->reference,
+                                                        .conf = conf,
+                                                        .replicates = replicates,
+                                                        .seed = seed},
+                                block->scores);
 }
 
 bool jod_load(struct jod *out, struct sample *sample, double conf, size_t replicates, uint64_t seed,

@@ -69,9 +69,10 @@ bool rating_options_add(struct rating_options_list *list, struct sample *sample,
     struct rating_options *q = find_question(list, sample, row);
     if (!q)
         return false;
-    if (open->trial_id != row->trial_id || open->subject == row->subject) {
+    size_t question = (size_t)(q - list->items);
+    if (open->trial_id != row->trial_id || open->question != question || open->subject == row->subject) {
         rating_options_close(list, open);
-        *open = (struct rating_options_open){row->trial_id, row->subject, condition, row->value};
+        *open = (struct rating_options_open){row->trial_id, question, row->subject, condition, row->value};
         return true;
     }
     bool test = row->subject == 't';
@@ -100,40 +101,48 @@ static int by_cell(const void *x, const void *y)
     return order ? order : strcmp(a->factors, b->factors);
 }
 
-static void finish_question(struct rating_options *q, double conf, bool pratt)
+static bool finish_question(struct rating_options *q, double conf, bool pratt)
 {
-    double *p = q->cell_count ? malloc(2 * q->cell_count * sizeof *p) : NULL;
+    size_t most = 0;
+    for (size_t i = 0; i < q->cell_count; i++)
+        most = q->cells[i].n > most ? q->cells[i].n : most;
+    double *p = malloc((2 * q->cell_count + 1) * sizeof *p),
+           *difference = malloc((most + 1) * sizeof *difference);
+    bool ok = p && difference;
     if (q->cell_count > 1)
         qsort(q->cells, q->cell_count, sizeof q->cells[0], by_cell);
-    for (size_t i = 0; i < q->cell_count; i++) {
+    for (size_t i = 0; ok && i < q->cell_count; i++) {
         struct rating_option_cell *c = &q->cells[i];
         for (size_t k = 0; k < c->n; k++) {
+            // of sums, so that equal differences stay equal and tie
+            difference[k] = (c->test_value[k] - c->reference_value[k]) / c->count[k];
             c->test_value[k] /= c->count[k];
             c->reference_value[k] /= c->count[k];
         }
         c->test_of = stat_moments(c->test_value, c->n);
         c->reference_of = stat_moments(c->reference_value, c->n);
-        c->difference = stat_ttest_paired(c->test_value, c->reference_value, c->n,
-                                          &(struct stat_ttest_options){.conf = conf});
-        c->rank = stat_wilcoxon_paired(c->test_value, c->reference_value, c->n,
-                                       &(struct stat_wilcoxon_options){.conf = conf, .pratt = pratt});
-        c->effect = stat_effect_paired(c->test_value, c->reference_value, c->n, conf);
+        c->difference = stat_ttest_one_sample(difference, c->n, &(struct stat_ttest_options){.conf = conf});
+        c->rank =
+            stat_wilcoxon(difference, c->n, &(struct stat_wilcoxon_options){.conf = conf, .pratt = pratt});
+        c->effect = stat_effect_one_sample(difference, c->n, 0, conf);
         c->average = stat_effect_average(c->test_value, c->reference_value, c->n, conf);
-        c->p_holm = (double)NAN;
-        if (p)
-            p[i] = c->difference.p_value;
+        p[i] = c->difference.p_value;
     }
-    if (p)
+    if (ok)
         stat_adjust_holm(p, q->cell_count, p + q->cell_count);
-    for (size_t i = 0; p && i < q->cell_count; i++)
+    for (size_t i = 0; ok && i < q->cell_count; i++)
         q->cells[i].p_holm = p[q->cell_count + i];
     free(p);
+    free(difference);
+    return ok;
 }
 
-void rating_options_finish(struct rating_options_list *list, double conf, bool pratt)
+bool rating_options_finish(struct rating_options_list *list, double conf, bool pratt)
 {
-    for (size_t i = 0; i < list->count; i++)
-        finish_question(&list->items[i], conf, pratt);
+    bool ok = true;
+    for (size_t i = 0; ok && i < list->count; i++)
+        ok = finish_question(&list->items[i], conf, pratt);
+    return ok;
 }
 
 void rating_options_free(struct rating_options_list *list)

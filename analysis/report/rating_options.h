@@ -34,6 +34,7 @@ struct rating_options {
 // The first of two ratings of a trial while the second is waited for. All zero at first.
 struct rating_options_open {
     int64_t trial_id; // 0: none
+    size_t question;  // index
     char subject;
     size_t condition;
     double value;
@@ -51,7 +52,8 @@ bool rating_options_add(struct rating_options_list *list, struct sample *sample,
                         size_t condition);
 // After the last rating of a file.
 void rating_options_close(struct rating_options_list *list, struct rating_options_open *open);
-void rating_options_finish(struct rating_options_list *list, double conf, bool pratt);
+// False where memory ran out.
+bool rating_options_finish(struct rating_options_list *list, double conf, bool pratt);
 void rating_options_free(struct rating_options_list *list);
 
 #endif

@@ -9,6 +9,7 @@
 struct open_pair {
     size_t file;
     int64_t session_id;
+    size_t person;
     size_t question; // SAMPLE_NONE: none yet
     size_t count;
     size_t conditions[2];
@@ -51,6 +52,24 @@ static struct rating_group *find_group(struct rating_question *q, const struct o
     return &q->groups[q->group_count++];
 }
 
+// The place of a person in a group; SAMPLE_NONE where memory ran out.
+static size_t find_person(struct rating_group *group, size_t person)
+{
+    size_t i = 0;
+    while (i < group->n && group->person[i] != person)
+        i++;
+    if (i < group->n)
+        return i;
+    if (!sample_grow(&group->first, i, sizeof group->first[0]) ||
+        !sample_grow(&group->second, i, sizeof group->second[0]) ||
+        !sample_grow(&group->person, i, sizeof group->person[0]) ||
+        !sample_grow(&group->sittings, i, sizeof group->sittings[0]))
+        return SAMPLE_NONE;
+    group->person[i] = person;
+    group->first[i] = group->second[i] = group->sittings[i] = 0;
+    return group->n++;
+}
+
 static bool close_pair(struct filling *f)
 {
     struct open_pair *pair = &f->pair;
@@ -64,11 +83,12 @@ static bool close_pair(struct filling *f)
         return true;
     }
     struct rating_group *group = find_group(q, pair);
-    if (!group || !sample_grow(&group->first, group->n, sizeof group->first[0]) ||
-        !sample_grow(&group->second, group->n, sizeof group->second[0]))
+    size_t i = group ? find_person(group, pair->person) : SAMPLE_NONE;
+    if (i == SAMPLE_NONE)
         return false;
-    group->first[group->n] = pair->values[0];
-    group->second[group->n++] = pair->values[1];
+    group->first[i] += pair->values[0];
+    group->second[i] += pair->values[1];
+    group->sittings[i]++;
     f->ratings->used += 2;
     return true;
 }
@@ -94,7 +114,8 @@ static bool left_out(struct filling *f, const struct store_rating_row *row, size
     return why != NULL;
 }
 
-static bool add_before_after(struct filling *f, const struct store_rating_row *row, size_t condition)
+static bool add_before_after(struct filling *f, const struct store_rating_row *row, size_t person,
+                             size_t condition)
 {
     size_t question = find_question(f, row);
     if (question == SAMPLE_NONE)
@@ -104,6 +125,7 @@ static bool add_before_after(struct filling *f, const struct store_rating_row *r
         if (!close_pair(f))
             return false;
         pair->session_id = row->session_id;
+        pair->person = person;
         pair->question = question;
     }
     if (pair->count == 2) {
@@ -124,7 +146,7 @@ static bool add_rating(void *user, const struct store_rating_row *row)
         return true;
     size_t person = f->sample->sessions[session].person;
     if (*row->order)
-        return add_before_after(f, row, condition);
+        return add_before_after(f, row, person, condition);
     if (strcmp(row->trial_kind, "rate") == 0)
         return factorial_add(&f->ratings->factorials, f->sample, row, person);
     if (row->subject != 's')
@@ -141,12 +163,26 @@ static int by_first(const void *x, const void *y)
     return (a->second_condition > b->second_condition) - (a->second_condition < b->second_condition);
 }
 
+// Whether somebody rated in both orders, in different sittings: the groups are then not independent.
+static bool overlap(const struct rating_group *a, const struct rating_group *b)
+{
+    for (size_t i = 0; i < a->n; i++)
+        for (size_t k = 0; k < b->n; k++)
+            if (a->person[i] == b->person[k])
+                return true;
+    return false;
+}
+
 static void finish(struct rating_question *q, double conf, bool pratt)
 {
     const struct stat_ttest_options options = {.conf = conf};
     qsort(q->groups, q->group_count, sizeof q->groups[0], by_first);
     for (size_t i = 0; i < q->group_count; i++) {
         struct rating_group *g = &q->groups[i];
+        for (size_t k = 0; k < g->n; k++) { // a person's sittings are averaged
+            g->first[k] /= g->sittings[k];
+            g->second[k] /= g->sittings[k];
+        }
         g->first_of = stat_moments(g->first, g->n);
         g->second_of = stat_moments(g->second, g->n);
         g->change = stat_ttest_paired(g->second, g->first, g->n, &options);
@@ -155,7 +191,8 @@ static void finish(struct rating_question *q, double conf, bool pratt)
         g->effect = stat_effect_paired(g->second, g->first, g->n, conf);
         g->average = stat_effect_average(g->second, g->first, g->n, conf);
     }
-    q->compared = q->group_count == 2;
+    q->overlap = q->group_count == 2 && overlap(&q->groups[0], &q->groups[1]);
+    q->compared = q->group_count == 2 && !q->overlap;
     if (!q->compared)
         return;
     const struct rating_group *a = &q->groups[0], *b = &q->groups[1];
@@ -176,7 +213,8 @@ bool ratings_load(struct ratings *out, struct sample *sample, double conf, bool 
         if (!ok && store_reader_error(sample->files[i])[0])
             snprintf(error, error_size, "%s", store_reader_error(sample->files[i]));
     }
-    ok = ok && factorial_finish(&out->factorials, sample, conf);
+    ok = ok && factorial_finish(&out->factorials, sample, conf) &&
+         rating_options_finish(&out->options, conf, pratt);
     if (!ok) {
         ratings_free(out);
         return false;
@@ -184,7 +222,6 @@ bool ratings_load(struct ratings *out, struct sample *sample, double conf, bool 
     for (size_t i = 0; i < out->question_count; i++)
         if (out->questions[i].group_count)
             finish(&out->questions[i], conf, pratt);
-    rating_options_finish(&out->options, conf, pratt);
     error[0] = '\0';
     return true;
 }
@@ -195,6 +232,8 @@ void ratings_free(struct ratings *ratings)
         for (size_t j = 0; j < ratings->questions[i].group_count; j++) {
             free(ratings->questions[i].groups[j].first);
             free(ratings->questions[i].groups[j].second);
+            free(ratings->questions[i].groups[j].person);
+            free(ratings->questions[i].groups[j].sittings);
         }
         free(ratings->questions[i].groups);
     }

@@ -4,10 +4,10 @@
 // Before and after: two ratings per person, the comparison of Franke 2021, section 8.2.
 //
 // Of each question, the two ratings of different conditions that a rate block and its complement ask make a
-// pair. Sessions are grouped by which condition came first. First ratings are compared between the two groups
-// by Welch's t-test (what people say before they have learned to see a difference); second minus first is
-// tested within each group by a paired t-test. The two groups are never pooled: their differences have opposite
-// meanings and would cancel.
+// pair. People are grouped by which condition came first; several sittings of a person in one order are
+// averaged. First ratings are compared between the two groups by Welch's t-test (what people say before they
+// have learned to see a difference); second minus first is tested within each group by a paired t-test. The two
+// groups are never pooled: their differences have opposite meanings and would cancel.
 #ifndef ANALYSIS_REPORT_RATINGS_H
 #define ANALYSIS_REPORT_RATINGS_H
 
@@ -21,8 +21,10 @@
 
 struct rating_group {
     size_t first_condition, second_condition;
-    size_t n; // pairs
-    double *first, *second;
+    size_t n;               // people
+    double *first, *second; // of each, the mean over sittings
+    size_t *person;
+    double *sittings;
     struct stat_moments first_of, second_of;
     struct stat_ttest change;           // second minus first, paired; NaN where all changes are equal or n < 2
     struct stat_wilcoxon rank;          // of the same changes
@@ -34,7 +36,8 @@ struct rating_question {
     double scale_min, scale_max;
     size_t group_count;
     struct rating_group *groups;
-    bool compared; // exactly two groups: `first_between` is group 0 minus group 1
+    bool overlap;  // somebody is in both of two groups
+    bool compared; // exactly two groups, nobody in both: `first_between` is group 0 minus group 1
     struct stat_ttest first_between;
     struct stat_effect between_effect; // in the pooled SD
     int64_t unpaired;                  // sessions with a rating and no pair

@@ -9,18 +9,43 @@
 
 void report_cell_words(const struct choice_cell *cell, char out[256])
 {
+    char words[256];
     if (cell->level_count)
-        level_join(cell, 0, cell->level_count, out);
+        level_join(cell, 0, cell->level_count, words);
     else
-        snprintf(out, 256, "%s", cell->label);
+        snprintf(words, sizeof words, "%s", cell->label);
+    snprintf(out, 256, "%s%s%.200s%s", cell->name_block ? cell->block : "", cell->name_block ? ": " : "", words,
+             cell->right && cell->level_count ? ", right answers" : "");
 }
 
-static void list_outside(const struct report *r, bool for_test)
+// 1: the test option, or right answers; -1: the other; 0: neither, or people and their mean share disagree.
+static int direction(const struct choice_cell *cell)
+{
+    if (!report_outside(cell))
+        return 0;
+    if (!cell->several)
+        return 2 * cell->chosen > cell->n ? 1 : -1;
+    int people = (cell->flip.statistic > 0) - (cell->flip.statistic < 0),
+        share = (cell->estimate > 0.5) - (cell->estimate < 0.5);
+    return people == share ? people : 0;
+}
+
+static const char *direction_words(const struct choice_cell *cell)
+{
+    static const char *const words[2][3] = {
+        {"reference", "no clear preference", "test"},
+        {"wrong more often", "no better than guessing", "right more often"}};
+    if (report_outside(cell) && direction(cell) == 0)
+        return "p and mean share disagree";
+    return words[cell->right][direction(cell) + 1];
+}
+
+static void list_outside(const struct report *r, bool right, int where)
 {
     bool first = true;
     for (size_t i = 0; i < r->choices.cell_count; i++) {
         const struct choice_cell *cell = &r->choices.cells[i];
-        if (!report_outside(cell) || (2 * cell->chosen > cell->n) != for_test)
+        if (cell->right != right || direction(cell) != where)
             continue;
         char words[256];
         report_cell_words(cell, words);
@@ -32,35 +57,40 @@ static void list_outside(const struct report *r, bool for_test)
 
 void report_summary(const struct report *r)
 {
-    int64_t cells = 0, test = 0, reference = 0, holm = 0;
+    int64_t cells = 0, outside = 0, holm = 0, of[2][3] = {{0}};
     for (size_t i = 0; i < r->choices.cell_count; i++) {
         const struct choice_cell *cell = &r->choices.cells[i];
         cells += cell->n > 0;
-        test += report_outside(cell) && 2 * cell->chosen > cell->n;
-        reference += report_outside(cell) && 2 * cell->chosen < cell->n;
+        outside += report_outside(cell);
+        of[cell->right][direction(cell) + 1]++;
         holm += cell->holm <= 1 - r->conf;
     }
     if (cells == 0)
         return;
     fputs("<p class=\"lead\">", r->out);
-    const char *is = test + reference == 1 ? "lies" : "lie";
+    const char *is = outside == 1 ? "lies" : "lie";
     if (r->choices.several)
-        html_printf(r->out, "Of %" PRId64 " cells, %" PRId64 " %s a preference (p \u2264 %.4g)", cells,
-                    test + reference, test + reference == 1 ? "shows" : "show", 1 - r->conf);
+        html_printf(r->out, "Of %" PRId64 " cells, %" PRId64 " %s p \u2264 %.4g", cells, outside,
+                    outside == 1 ? "has" : "have", 1 - r->conf);
     else
         html_printf(r->out,
                     "Of %" PRId64 " cells, %" PRId64 " %s outside the %g\u00a0%% region of the null hypothesis",
-                    cells, test + reference, is, 100 * r->conf);
-    if (reference) {
-        fputs("; the reference was preferred for ", r->out);
-        list_outside(r, false);
-    }
-    if (test) {
-        fputs("; the test option was preferred for ", r->out);
-        list_outside(r, true);
-    }
+                    cells, outside, is, 100 * r->conf);
+    static const struct {
+        bool right;
+        int where;
+        const char *words;
+    } lists[] = {{false, -1, "; the reference was preferred for "},
+                 {false, 1, "; the test option was preferred for "},
+                 {true, 1, "; answers were right more often than by guessing for "},
+                 {true, -1, "; answers were wrong more often than by guessing for "}};
+    for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++)
+        if (of[lists[i].right][lists[i].where + 1]) {
+            fputs(lists[i].words, r->out);
+            list_outside(r, lists[i].right, lists[i].where);
+        }
     fputs(". ", r->out);
-    if (cells > test + reference)
+    if (cells > outside)
         fputs("The other cells show no clear preference, which does not show that the options look the same. ",
               r->out);
     html_printf(r->out, "With Holm\u2019s correction for the number of cells, %" PRId64 " of them %s.", holm,
@@ -86,13 +116,14 @@ static void choices_caption(const struct report *r, char *out, size_t size)
             r->choices.one_each ? "Where a person answered several times in a cell, the bar is"
                                 : "Each person answered several times in a cell; the bar is",
             100 * r->conf);
-    snprintf(
-        out, size,
-        "<span class=\"key\" style=\"background:#e8912d\"></span> Percent of choices for the test option. %s%s"
-        "Dashed: 50&nbsp;%%. In the bars: percent, and answers for the test option of all answers.%s",
-        region, interval,
-        !figure_choices_numbered(&r->choices) ? ""
-                                              : " Numbers under the bars are those of the table\u2019s rows.");
+    snprintf(out, size,
+             "<span class=\"key\" style=\"background:#e8912d\"></span> Percent of choices for the test option, "
+             "or of right answers. %s%s"
+             "Dashed: 50&nbsp;%%. In the bars: percent, and answers for the test option of all answers.%s",
+             region, interval,
+             !figure_choices_numbered(&r->choices)
+                 ? ""
+                 : " Numbers under the bars are those of the table\u2019s rows.");
 }
 
 static void choice_row(const struct report *r, const struct choice_cell *cell, size_t index)
@@ -129,9 +160,7 @@ static void choice_row(const struct report *r, const struct choice_cell *cell, s
         for (int i = 0; i < (r->choices.several ? 6 : 5); i++)
             html_cell(out, "td", "none");
     }
-    html_cell(out, "td class=\"word\"", "%s",
-              report_outside(cell) ? (2 * cell->chosen > cell->n ? "test" : "reference")
-                                   : "no clear preference");
+    html_cell(out, "td class=\"word\"", "%s", direction_words(cell));
     fputs("</tr>\n", out);
 }
 
@@ -147,7 +176,8 @@ static void choices_table(const struct report *r)
             : c->one_each ? "exact two-sided binomial or sign-flip test"
                           : "exact two-sided sign-flip test");
     fputs(numbered ? "<th scope=\"col\">no.</th>" : "", out);
-    fputs("<th scope=\"col\" class=\"word\">cell</th><th scope=\"col\">test</th><th scope=\"col\">n</th>", out);
+    fputs("<th scope=\"col\" class=\"word\">cell</th><th scope=\"col\">chosen</th><th scope=\"col\">n</th>",
+          out);
     fputs(c->several ? "<th scope=\"col\">people</th>" : "", out);
     fprintf(out,
             "<th scope=\"col\">share</th><th scope=\"col\">%g&nbsp;%% interval</th><th scope=\"col\">null "
@@ -155,7 +185,7 @@ static void choices_table(const struct report *r)
             100 * c->conf);
     fputs(c->several ? "<th scope=\"col\" class=\"word\">tested by</th>" : "", out);
     fputs("<th scope=\"col\">p</th><th scope=\"col\">p (Holm)</th><th scope=\"col\" "
-          "class=\"word\">preferred</th></tr></thead>\n<tbody>\n",
+          "class=\"word\">result</th></tr></thead>\n<tbody>\n",
           out);
     for (size_t i = 0; i < c->cell_count; i++)
         choice_row(r, &c->cells[i], i);
@@ -243,14 +273,16 @@ void report_toggles(const struct report *r)
     if (c->cell_count == 0)
         return;
     fputs("<h2>Toggles before answering</h2>\n<p>", r->out);
-    if (c->toggles.n)
+    if (c->toggles.n > 1)
         html_printf(r->out, "%.2f switches before a decision (SD %.2f) over %zu answers. ", c->toggles.mean,
                     c->toggles.sd, c->toggles.n);
-    html_printf(r->out,
-                "Over all %" PRId64 " answers: the option shown first was chosen "
-                "in %" PRId64 " (%.0f\u00a0%%), the one in slot a in %" PRId64 " (%.0f\u00a0%%).",
-                c->answers, c->chosen_first, 100 * (double)c->chosen_first / (double)c->answers, c->chosen_a,
-                100 * (double)c->chosen_a / (double)c->answers);
+    int64_t decided = c->answers - c->equal;
+    if (decided)
+        html_printf(r->out,
+                    "Over all %" PRId64 " answers for an option: the one shown first was chosen "
+                    "in %" PRId64 " (%.0f\u00a0%%), the one in slot a in %" PRId64 " (%.0f\u00a0%%).",
+                    decided, c->chosen_first, 100 * (double)c->chosen_first / (double)decided, c->chosen_a,
+                    100 * (double)c->chosen_a / (double)decided);
     fputs("</p>\n", r->out);
     toggles_table(r);
 }

@@ -21,8 +21,8 @@ static void test_row(const struct report *r, const struct rating_option_cell *c)
     html_p_value(holm, c->p_holm);
     cell_heading(r, c);
     html_cell(out, "td", "%zu", c->n);
-    html_cell(out, "td", "%.2f (%.2f)", c->test_of.mean, c->test_of.sd);
-    html_cell(out, "td", "%.2f (%.2f)", c->reference_of.mean, c->reference_of.sd);
+    report_mean_sd(out, &c->test_of);
+    report_mean_sd(out, &c->reference_of);
     html_cell(out, "td", "%+.2f", c->difference.estimate);
     if (isnan(c->difference.p_value)) {
         html_cell(out, "td colspan=\"4\" class=\"word\"",

@@ -117,12 +117,11 @@ static void tests_notes(const struct report *r)
         report_cell_words(cell, words);
         if (cell->method == CHOICE_SIGN_FLIP && cell->flip.least_p > 1 - r->conf) {
             fputs("<p class=\"note\">", r->out);
-            html_printf(
-                r->out,
-                "%s: with %zu %s the sign-flip p is never below %.2g; it cannot reach %.2g, whatever is "
-                "answered.",
-                words, cell->flip.people, cell->flip.people == 1 ? "person" : "people", cell->flip.least_p,
-                1 - r->conf);
+            html_printf(r->out,
+                        "%s: %zu of %zu people did not choose both equally often; with so many the sign-flip p "
+                        "is never below "
+                        "%.2g and cannot reach %.2g.",
+                        words, cell->flip.uneven, cell->flip.people, cell->flip.least_p, 1 - r->conf);
             fputs("</p>\n", r->out);
         }
         if (cell->several && (cell->ci.low < 0 || cell->ci.high > 1)) {
@@ -133,6 +132,11 @@ static void tests_notes(const struct report *r)
             fputs("</p>\n", r->out);
         }
     }
+    fputs("<p>The sign-flip statistic sums, over people, the answers for the test option less half of the "
+          "person\u2019s "
+          "answers, so that whoever answered more weighs more; shares and their t count each person the "
+          "same.</p>\n",
+          r->out);
     fputs("<p class=\"note\"><strong>Pooled:</strong> the binomial test of all answers takes the answers of "
           "one person "
           "as independent. Overdispersion is Pearson\u2019s chi-squared of the people\u2019s counts over its "

@@ -138,12 +138,6 @@ static void left_out(const struct report *r)
                 "<p class=\"note\">%" PRId64
                 " %s not complete; the answers given are part of every number here.</p>\n",
                 incomplete, incomplete == 1 ? "session is" : "sessions are");
-    if (sample_repeaters(r->sample))
-        fprintf(r->out,
-                "<p class=\"note\">People with several sessions: %zu; before and after, ratings take each "
-                "session as a person of "
-                "its own.</p>\n",
-                sample_repeaters(r->sample));
     int64_t all = sessions + c->excluded + c->not_done + c->other_kinds + c->no_test_slot + t->excluded +
                   t->other_kinds + t->not_done + t->no_condition + t->more + t->options.unpaired +
                   t->not_finite + (int64_t)(r->sample->left_out_simulated + r->sample->left_out_protocol);
@@ -153,7 +147,9 @@ static void left_out(const struct report *r)
     count_item(r, sessions, "excluded sessions");
     count_item(r, c->excluded, "answers to excluded trials");
     count_item(r, c->not_done, "answers to trials that are not done");
-    count_item(r, c->other_kinds, "answers to practice, catch, null and staircase trials");
+    count_item(r, c->other_kinds,
+               "answers to practice, catch and null trials, and those of staircases, which have a section of "
+               "their own");
     count_item(r, c->no_test_slot, "answers to trials without a test option");
     count_item(r, t->other_kinds, "ratings in practice, catch and null trials");
     count_item(r, t->excluded, "ratings in excluded trials");

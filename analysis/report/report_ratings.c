@@ -4,6 +4,14 @@
 #include <inttypes.h>
 #include <math.h>
 
+void report_mean_sd(FILE *out, const struct stat_moments *of)
+{
+    if (isnan(of->sd))
+        html_cell(out, "td", "%.2f", of->mean);
+    else
+        html_cell(out, "td", "%.2f (%.2f)", of->mean, of->sd);
+}
+
 static void group_row(const struct report *r, const struct rating_group *g)
 {
     FILE *out = r->out;
@@ -13,8 +21,8 @@ static void group_row(const struct report *r, const struct rating_group *g)
     html_cell(out, "th scope=\"row\" class=\"word\"", "%s", report_label(r, g->first_condition));
     html_cell(out, "td class=\"word\"", "%s", report_label(r, g->second_condition));
     html_cell(out, "td", "%zu", g->n);
-    html_cell(out, "td", "%.2f (%.2f)", g->first_of.mean, g->first_of.sd);
-    html_cell(out, "td", "%.2f (%.2f)", g->second_of.mean, g->second_of.sd);
+    report_mean_sd(out, &g->first_of);
+    report_mean_sd(out, &g->second_of);
     html_cell(out, "td", "%+.2f", g->change.estimate);
     if (isnan(g->change.p_value)) {
         html_cell(out, "td colspan=\"3\" class=\"word\"",
@@ -103,7 +111,9 @@ static void first_sentence(const struct report *r, const struct rating_question 
     char p[24];
     html_p_value(p, w->p_value);
     fputs("<p>", r->out);
-    if (!q->compared)
+    if (q->overlap)
+        fputs("First ratings are not compared: somebody rated in both orders.", r->out);
+    else if (!q->compared)
         html_printf(r->out, "First ratings are not compared: that needs two order groups, there %s %zu.",
                     q->group_count == 1 ? "is" : "are", q->group_count);
     else if (isnan(w->p_value))

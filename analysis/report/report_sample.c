@@ -253,6 +253,11 @@ void report_sample(const struct report *r)
                 "reports them.</p>\n",
                 s->left_out_protocol, s->left_out_protocol == 1 ? "session" : "sessions",
                 s->left_out_protocol == 1 ? "is" : "are");
+    if (sample_shared_codes(s))
+        fprintf(r->out,
+                "<p class=\"note\">%zu participant %s in several files; each file\u2019s is taken for another "
+                "person.</p>\n",
+                sample_shared_codes(s), sample_shared_codes(s) == 1 ? "code stands" : "codes stand");
     differing_note(r);
 }
 

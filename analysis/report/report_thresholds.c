@@ -133,9 +133,8 @@ static void staircase_words(const struct report *r)
         "intervals. Bayes: priors of Sch\u00fctt et al. 2016, overdispersed answers. Means and their t "
         "intervals are over people; people without an estimate are not in them, and not by chance. Where "
         "nobody "
-        "answered twice at a level, people share one function, whose intervals take answers at different "
-        "levels "
-        "as independent too.");
+        "answered twice at a level, people share one function, without intervals: a person\u2019s answers are "
+        "not independent.");
     fputs("</p>\n", r->out);
 }
 
@@ -214,6 +213,9 @@ static void report_staircases(const struct report *r)
                 "<p>Left out of the fits: %" PRId64 " steps of excluded trials, %" PRId64
                 " of trials that are not done.</p>\n",
                 t->excluded, t->not_done);
+    if (t->not_finite)
+        fprintf(r->out, "<p class=\"note\">Left out, levels that are not finite: %" PRId64 ".</p>\n",
+                t->not_finite);
 }
 
 // --- adjusted values ---
@@ -260,7 +262,8 @@ static void jod_rows(const struct report *r, const struct jod_block *b)
 {
     static const char *const notes[] = {
         "", "the reference", "not estimable: not compared with the reference, nor by way of others",
-        "not estimable without a prior: always preferred", "not estimable without a prior: never preferred"};
+        "not estimable without a prior: no chain of answers prefers the reference to it",
+        "not estimable without a prior: no chain of answers prefers it to the reference"};
     FILE *out = r->out;
     for (size_t place = 0; place < b->option_count; place++) {
         size_t i = b->order[place];

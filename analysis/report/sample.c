@@ -75,6 +75,19 @@ size_t sample_repeaters(const struct sample *sample)
     return repeaters;
 }
 
+size_t sample_shared_codes(const struct sample *sample)
+{
+    size_t shared = 0;
+    for (size_t i = 0; i < sample->person_count; i++) {
+        bool again = false;
+        for (size_t j = 0; j < i && !again; j++)
+            again = sample->people[i].file != sample->people[j].file &&
+                    strcmp(sample->people[i].code, sample->people[j].code) == 0;
+        shared += again;
+    }
+    return shared;
+}
+
 static bool excluded(const struct sample *sample, size_t file, int64_t trial_id, bool ratings)
 {
     for (size_t i = 0; i < sample->exclusion_count; i++) {

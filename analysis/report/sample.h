@@ -120,6 +120,8 @@ size_t sample_find_session(const struct sample *sample, size_t file, int64_t id)
 size_t sample_find_condition(const struct sample *sample, size_t file, int64_t id);
 // People with more than one session that is analysed.
 size_t sample_repeaters(const struct sample *sample);
+// Codes of people that are analysed from more than one file: they count as different people.
+size_t sample_shared_codes(const struct sample *sample);
 // Whether a choice, and whether ratings, made in a trial are left out.
 bool sample_trial_excluded(const struct sample *sample, size_t file, int64_t trial_id);
 bool sample_ratings_excluded(const struct sample *sample, size_t file, int64_t trial_id);

@@ -56,6 +56,8 @@ void report_people(const struct report *r); // cells with several answers per pe
 void report_cell_words(const struct choice_cell *cell, char out[256]);
 void report_toggles(const struct report *r);
 void report_ratings(const struct report *r);
+// A cell: M (SD), without an SD where there is none.
+void report_mean_sd(FILE *out, const struct stat_moments *of);
 // A cell; one that reaches to infinity says that n is too small for its confidence.
 void report_rank_interval(FILE *out, const struct stat_wilcoxon *rank);
 // Parts of the ratings; figures may be NULL.

@@ -82,9 +82,9 @@ struct threshold_cell {
 struct thresholds {
     struct threshold_options options;
     size_t cell_count;
-    struct threshold_cell *cells; // staircases first, by block and factors
-    int64_t steps;                // used
-    int64_t not_done, excluded;   // left out, by the first reason that holds
+    struct threshold_cell *cells;           // staircases first, by block and factors
+    int64_t steps;                          // used
+    int64_t not_finite, not_done, excluded; // left out, by the first reason that holds
 };
 
 // False with a sentence. No staircase at all is not an error: cell_count is 0.

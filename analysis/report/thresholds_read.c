@@ -26,6 +26,13 @@ struct filling {
     size_t cell, session;
     double level, estimate;
     int64_t outcome;
+    // Staircases of this file with a trial to come; owned.
+    struct unfinished {
+        int64_t session_id;
+        const char *block, *factors;
+    } * unfinished;
+    size_t unfinished_count;
+    bool ended;
 };
 
 void threshold_label_text(const struct sample *sample, const char *factors, const char *without, bool words,
@@ -111,14 +118,14 @@ static void vote_parameter(struct filling *f, struct vote *vote, const struct st
     vote->any = true;
 }
 
-// A staircase is over: its last estimate is its own.
+// The rows of a staircase are over: its last estimate is its own, where it ran to its end.
 static void close_staircase(struct filling *f)
 {
     if (f->cell == SAMPLE_NONE)
         return;
     struct threshold_cell *cell = &f->thresholds->cells[f->cell];
     struct threshold_person *person = threshold_find_person(cell, f->sample->sessions[f->session].person);
-    if (person && !isnan(f->estimate)) {
+    if (person && f->ended && !isnan(f->estimate)) {
         double before = person->estimates ? person->estimate * (double)person->estimates : 0;
         person->estimate = (before + f->estimate) / (double)++person->estimates;
     }
@@ -134,6 +141,33 @@ static void open_staircase(struct filling *f, size_t cell, size_t session, struc
     person->staircases++;
 }
 
+static bool add_unfinished(void *user, const struct store_trial_row *row)
+{
+    struct filling *f = user;
+    if (strcmp(row->kind, "staircase") != 0 ||
+        (strcmp(row->status, "planned") != 0 && strcmp(row->status, "running") != 0))
+        return true;
+    const struct unfinished *last = f->unfinished_count ? &f->unfinished[f->unfinished_count - 1] : NULL;
+    if (last && last->session_id == row->session_id && strcmp(last->block, row->block) == 0 &&
+        strcmp(last->factors, row->factors) == 0)
+        return true;
+    if (!sample_grow(&f->unfinished, f->unfinished_count, sizeof f->unfinished[0]))
+        return false;
+    struct unfinished *one = &f->unfinished[f->unfinished_count++];
+    *one = (struct unfinished){row->session_id, sample_keep(f->sample, row->block),
+                               sample_keep(f->sample, row->factors)};
+    return one->block && one->factors;
+}
+
+static bool is_unfinished(const struct filling *f, const struct store_step_row *row)
+{
+    for (size_t i = 0; i < f->unfinished_count; i++)
+        if (f->unfinished[i].session_id == row->session_id && strcmp(f->unfinished[i].block, row->block) == 0 &&
+            strcmp(f->unfinished[i].factors, row->factors) == 0)
+            return true;
+    return false;
+}
+
 static bool add_step(void *user, const struct store_step_row *row)
 {
     struct filling *f = user;
@@ -141,14 +175,20 @@ static bool add_step(void *user, const struct store_step_row *row)
     size_t session = sample_find_session(f->sample, f->file, row->session_id);
     if (session == SAMPLE_NONE)
         return true;
+    if (!isfinite(row->level) || isinf(row->estimate)) { // which no program of ours writes
+        t->not_finite++;
+        return true;
+    }
     struct threshold_cell *cell = find_cell(f, row);
     struct threshold_person *person =
         cell ? threshold_find_person(cell, f->sample->sessions[session].person) : NULL;
     if (!person)
         return false;
     size_t index = (size_t)(cell - t->cells);
-    if (f->cell != index || f->session != session)
+    if (f->cell != index || f->session != session) {
         open_staircase(f, index, session, person);
+        f->ended = !is_unfinished(f, row);
+    }
     struct vote *vote = &f->votes[index];
     if (!isnan(f->level))
         *(f->outcome == 0 ? &vote->easier : &vote->harder) += (row->level > f->level) - (row->level < f->level);
@@ -193,7 +233,9 @@ bool thresholds_read(struct thresholds *out, struct sample *sample, char *error,
     snprintf(error, error_size, "not enough memory");
     for (size_t i = 0; ok && i < sample->file_count; i++) {
         f.file = i;
-        ok = store_read_staircase_steps(sample->files[i], add_step, &f);
+        f.unfinished_count = 0;
+        ok = store_read_trials(sample->files[i], add_unfinished, &f) &&
+             store_read_staircase_steps(sample->files[i], add_step, &f);
         if (!ok && store_reader_error(sample->files[i])[0])
             snprintf(error, error_size, "%s", store_reader_error(sample->files[i]));
         close_staircase(&f);
@@ -201,5 +243,6 @@ bool thresholds_read(struct thresholds *out, struct sample *sample, char *error,
     for (size_t i = 0; ok && i < out->cell_count; i++)
         finish_cell(&out->cells[i], &f.votes[i], out->options.larger);
     free(f.votes);
+    free(f.unfinished);
     return ok;
 }

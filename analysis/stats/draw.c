@@ -11,5 +11,5 @@ static uint64_t mix(uint64_t z)
 double stat_draw(uint64_t seed, uint64_t replicate, uint64_t index)
 {
     uint64_t bits = mix(mix(mix(seed) ^ replicate) ^ index);
-    return ((double)(bits >> 11) + 0.5) * 0x1p-53;
+    return ((double)(bits >> 12) + 0.5) * 0x1p-52; // with a bit more the largest would round to 1
 }

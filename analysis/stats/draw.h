@@ -7,7 +7,7 @@
 
 #include <stdint.h>
 
-// Uniform in (0, 1), 53 bits, by seed, replicate and index.
+// Uniform in (0, 1), 52 bits, by seed, replicate and index.
 double stat_draw(uint64_t seed, uint64_t replicate, uint64_t index);
 
 #endif

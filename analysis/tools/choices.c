@@ -99,7 +99,7 @@ static bool print_text(const struct sample *sample, const struct choices *c)
         "\nchosen: answers for the test option, tested against %g, %s; Holm p: adjusted for %zu %s; reaction: "
         "median.\n",
         c->p0, alternatives[c->alternative], c->tested, c->tested == 1 ? "cell" : "cells");
-    if (c->toggles.n)
+    if (c->toggles.n > 1)
         printf("Toggles over all answers: M %.2f, SD %.2f.\n", c->toggles.mean, c->toggles.sd);
     for (size_t i = 0; equal && i < c->cell_count; i++)
         if (c->cells[i].equal)
@@ -142,6 +142,7 @@ static void cell_json(struct json *json, const struct sample *sample, const stru
     json_number(json, "overdispersion", cell->overdispersion);
     if (cell->several)
         choices_people_json(json, cell, conf);
+    json_bool(json, "right_answers", cell->right);
     json_number(json, "toggles_mean", cell->toggles.mean);
     json_number(json, "toggles_sd", cell->toggles.sd);
     json_number(json, "reaction_s_median", cell->reaction_median_s);

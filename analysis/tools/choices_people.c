@@ -78,9 +78,10 @@ static void print_warnings(const struct choices *c)
     for (size_t i = 0; i < c->cell_count; i++) {
         const struct choice_cell *cell = &c->cells[i];
         if (cell->method == CHOICE_SIGN_FLIP && cell->flip.least_p > 1 - c->conf)
-            printf("%s: with %zu %s the sign-flip p is never below %.2g; it cannot reach %.2g.\n", cell->label,
-                   cell->flip.people, cell->flip.people == 1 ? "person" : "people", cell->flip.least_p,
-                   1 - c->conf);
+            printf("%s: %zu of %zu people did not choose both equally often; with so many the sign-flip p is "
+                   "never "
+                   "below %.2g and cannot reach %.2g.\n",
+                   cell->label, cell->flip.uneven, cell->flip.people, cell->flip.least_p, 1 - c->conf);
         if (cell->several && isnan(cell->t.t))
             printf("%s: no t interval, which needs two people with different shares.\n", cell->label);
         if (cell->several &&

@@ -6,6 +6,7 @@
 #include "analysis/tools/table.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -90,7 +91,13 @@ static bool print_question(const struct sample *sample, const struct rating_ques
     ok = print_ranks(sample, q, conf) && ok;
     const struct stat_ttest *w = &q->first_between;
     const struct stat_effect *d = &q->between_effect;
-    if (q->compared)
+    if (q->overlap)
+        puts("First ratings are not compared: somebody rated in both orders.");
+    else if (q->compared && isnan(w->p_value))
+        printf("First ratings differ by %.2f; there are too few, or all are equal, so that no t-test is "
+               "possible.\n",
+               w->estimate);
+    else if (q->compared)
         printf(
             "First ratings, %s minus %s: %.2f, %g %% CI %.2f to %.2f, t(%.2f) = %.3f, p %.4f (Welch), d %.2f, "
             "%g %% CI %.2f to %.2f\n",

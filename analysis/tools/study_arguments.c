@@ -85,9 +85,10 @@ void study_notes(const struct sample *sample)
         printf("Left out, sessions of another protocol than '%s' (--protocol NAME analyses them): %zu.\n",
                sample->protocol, sample->left_out_protocol);
     if (sample_repeaters(sample))
-        printf("People with several sessions: %zu; before and after, ratings take each session as a person of "
-               "its own.\n",
-               sample_repeaters(sample));
+        printf("People with several sessions: %zu.\n", sample_repeaters(sample));
+    if (sample_shared_codes(sample))
+        printf("Codes that stand in several files: %zu; each file's is taken for another person.\n",
+               sample_shared_codes(sample));
     for (size_t i = 0; i < sample->session_count; i++) {
         const struct sample_session *s = &sample->sessions[i];
         if (s->excluded)

@@ -202,8 +202,9 @@ static bool print_cell(const struct sample *sample, const struct threshold_cell 
     bool ok = table_print(&t, stdout);
     table_finish(&t);
     if (cell->pooled)
-        puts("Nobody answered twice at a level, so people share one function; its intervals take answers at "
-             "different levels as\nindependent too.");
+        puts("Nobody answered twice at a level, so people share one function, without intervals: a person's "
+             "answers "
+             "are not\nindependent.");
     putchar('\n');
     return ok && (cell->pooled || print_means(cell, o->conf));
 }
@@ -261,6 +262,8 @@ static void print_notes(const struct sample *sample, const struct thresholds *t,
     study_notes(sample);
     if (t->excluded + a->excluded)
         printf("Left out, excluded trials: %" PRId64 ".\n", t->excluded + a->excluded);
+    if (t->not_finite)
+        printf("Left out, levels that are not finite: %" PRId64 ".\n", t->not_finite);
     if (t->not_done + a->not_done)
         printf("Left out, trials that are not done: %" PRId64 ".\n", t->not_done + a->not_done);
 }

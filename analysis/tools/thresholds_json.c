@@ -156,6 +156,7 @@ void thresholds_json(FILE *out, const struct sample *sample, const struct thresh
     json_close(&json, ']');
     json_open(&json, "left_out", '{');
     json_integer(&json, "excluded", t->excluded + a->excluded);
+    json_integer(&json, "not_finite", t->not_finite);
     json_integer(&json, "not_done", t->not_done + a->not_done);
     json_close(&json, '}');
     json_close(&json, '}');

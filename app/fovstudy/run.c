@@ -60,20 +60,23 @@ static int run_one(const struct run_options *options)
     return run.study.wrong_usage ? EXIT_USAGE : status;
 }
 
-// EXIT_DONE where those who are complete took part in this protocol; a sentence either way.
-static int pass_over(const struct run_options *options, uint64_t complete)
+// Finds who is complete in this protocol, with a sentence; EXIT_DONE where the run may go on.
+static int pass_over(const struct run_options *options, bool out_complete[RUN_PARTICIPANTS + 1])
 {
     struct run_study study;
     char error[RUN_ERROR] = "";
     bool ok = run_study_init(&study, options, error, sizeof error) &&
-              (options->new_protocol || run_file_protocol(options, study.protocol, error, sizeof error));
+              (options->new_protocol || access(options->database, F_OK) != 0 ||
+               run_file_protocol(options, study.protocol, error, sizeof error));
+    uint64_t complete =
+        ok && !options->again ? run_file_complete(options, study.protocol->sha256_hex, out_complete) : 0;
     int status = ok ? EXIT_DONE : study.wrong_usage ? EXIT_USAGE : EXIT_FAILED;
     run_study_finish(&study);
-    if (ok)
+    if (!ok)
+        fprintf(stderr, "fovstudy: %s\n", error);
+    else if (complete > 0)
         fprintf(stderr, "fovstudy: %" PRIu64 " of %" PRIu64 " participants are complete and passed over\n",
                 complete, options->participants);
-    else
-        fprintf(stderr, "fovstudy: %s\n", error);
     return status;
 }
 
@@ -83,8 +86,7 @@ static int run_all(struct run_options *options)
 {
     char code[RUN_CODE];
     bool complete[RUN_PARTICIPANTS + 1] = {false};
-    uint64_t passed = options->again ? 0 : run_file_complete(options, complete);
-    int status = passed > 0 ? pass_over(options, passed) : EXIT_DONE;
+    int status = pass_over(options, complete);
     if (status != EXIT_DONE)
         return status;
     options->participant = code;

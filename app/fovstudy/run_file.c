@@ -69,8 +69,9 @@ void run_file_code(uint64_t i, char out[RUN_CODE])
     snprintf(out, RUN_CODE, "S%03" PRIu64, i);
 }
 
-// Of each code whether it has a complete session, and one that is not.
+// Of each code whether it has a complete session of the protocol, and one that is not.
 struct codes {
+    const char *sha256;
     uint64_t count;
     bool *complete;
     bool unfinished[RUN_PARTICIPANTS + 1];
@@ -86,7 +87,7 @@ static bool take_code(void *user, const struct store_session_row *row)
         if (strcmp(code, row->code) == 0)
             break;
     }
-    if (i > codes->count)
+    if (i > codes->count || strcmp(row->protocol_sha256, codes->sha256) != 0)
         return true;
     bool complete = strcmp(row->status, "complete") == 0;
     codes->unfinished[i] = codes->unfinished[i] || !complete;
@@ -94,10 +95,11 @@ static bool take_code(void *user, const struct store_session_row *row)
     return true;
 }
 
-uint64_t run_file_complete(const struct run_options *options, bool out_complete[RUN_PARTICIPANTS + 1])
+uint64_t run_file_complete(const struct run_options *options, const char *sha256,
+                           bool out_complete[RUN_PARTICIPANTS + 1])
 {
     char unused[256];
-    struct codes codes = {.count = options->participants, .complete = out_complete};
+    struct codes codes = {.sha256 = sha256, .count = options->participants, .complete = out_complete};
     memset(out_complete, 0, (RUN_PARTICIPANTS + 1) * sizeof *out_complete);
     struct store_reader *reader = access(options->database, F_OK) == 0
                                       ? store_reader_open(options->database, unused, sizeof unused)

@@ -16,8 +16,9 @@ bool run_file_protocol(const struct run_options *options, const struct protocol 
 enum { RUN_CODE = 32 }; // bytes, with the end
 // The code of the i-th of --participants, from 1.
 void run_file_code(uint64_t i, char out[RUN_CODE]);
-// Which of --participants, out_complete[1..participants], have sessions that are all complete. Returns how
-// many; 0 also where there is no file yet, or none that can be read: the run then says why.
-uint64_t run_file_complete(const struct run_options *options, bool out_complete[RUN_PARTICIPANTS + 1]);
+// Which of --participants, out_complete[1..participants], have sessions of the protocol that are all complete.
+// Returns how many; 0 also where there is no file yet, or none that can be read: the run then says why.
+uint64_t run_file_complete(const struct run_options *options, const char *sha256,
+                           bool out_complete[RUN_PARTICIPANTS + 1]);
 
 #endif

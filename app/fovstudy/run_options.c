@@ -240,6 +240,8 @@ void run_options_patience(struct run_options *options)
 int run_options_code(const char *command, const char *code)
 {
     size_t length = strlen(code);
+    if (strncmp(code, "forgotten-", 10) == 0)
+        return options_wrong(command, "'%.64s' is kept for people who were erased; give another code", code);
     if (length >= 1 && length <= 32 &&
         strspn(code, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-") == length)
         return -1;

@@ -36,12 +36,15 @@ enum store_result store_participant_number(struct store *store, const char *code
     return sql_end(store, result, error);
 }
 
-static enum store_result check_seed(struct store *store, uint64_t seed, struct store_error *error)
+// Of one protocol's sessions: another protocol in the file has its own.
+static enum store_result check_seed(struct store *store, uint64_t seed, const char *protocol,
+                                    struct store_error *error)
 {
     struct sql_value other = {0};
     bool found = false;
     enum store_result result =
-        sql_get(store, SQL_OTHER_SEED, (struct sql_value[]){sql_seed(seed)}, 1, &other, 1, &found, error);
+        sql_get(store, SQL_OTHER_SEED, (struct sql_value[]){sql_seed(seed), sql_text(protocol)}, 2, &other, 1,
+                &found, error);
     if (result != STORE_OK || !found)
         return result;
     sql_say(error, "%s: its sessions have the seed %llu, not %llu; use that seed or a new file", store->path,
@@ -194,7 +197,7 @@ enum store_result store_create_session(struct store *store, const struct store_s
 {
     enum store_result result = sql_begin(store, error);
     if (result == STORE_OK)
-        result = check_seed(store, session->seed, error);
+        result = check_seed(store, session->seed, session->protocol.name, error);
     if (result == STORE_OK)
         result = add_protocol(store, &session->protocol, &out_ids->protocol_id, error);
     if (result == STORE_OK)

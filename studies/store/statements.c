@@ -11,7 +11,9 @@ const char *const sql_statements[SQL_STATEMENTS] = {
     [SQL_COMMIT] = "COMMIT",
     [SQL_ROLLBACK] = "ROLLBACK",
 
-    [SQL_OTHER_SEED] = "SELECT seed FROM session WHERE seed <> ?1 LIMIT 1",
+    [SQL_OTHER_SEED] =
+        "SELECT s.seed FROM session s JOIN protocol p ON p.id = s.protocol_id WHERE s.seed <> ?1 AND "
+        "p.name = ?2 LIMIT 1",
     [SQL_FIND_PROTOCOL] = "SELECT id FROM protocol WHERE sha256 = ?1",
     [SQL_INSERT_PROTOCOL] = "INSERT INTO protocol (name, sha256, text) VALUES (?1, ?2, ?3)",
     [SQL_FIND_PARTICIPANT] = "SELECT id, number, kind = ?2, "

@@ -276,7 +276,7 @@ static void nothing_is_switched_in_sequential_trials(void **state)
     program_free(&r);
     char *page = slurp("r.html");
     assert_null(strstr(page, "switches before a decision"));
-    assert_non_null(strstr(page, "the option shown first was chosen in"));
+    assert_non_null(strstr(page, "the one shown first was chosen in"));
     free(page);
     const char *choices[] = {fovstats, "choices", "s.db", NULL};
     r = program_run(choices, NULL);
@@ -323,7 +323,7 @@ static void several_answers_are_people(void **state)
                                         "smallest attainable p",
                                         "<td>4.8e-07</td>",
                                         "of a person in the middle",
-                                        "Of 2 cells, 1 shows a preference (p \u2264 0.05)",
+                                        "Of 2 cells, 1 has p \u2264 0.05",
                                         "<td>5 to 14</td>"};
     for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++)
         if (!strstr(page, parts[i]))
@@ -351,7 +351,8 @@ static void separation_is_said(void **state)
     study_file_sql("s.db",
                    "DELETE FROM choice WHERE segment_id > 4; UPDATE choice SET chosen = 'b' WHERE id % 8 = 0");
     page = report_file(false);
-    assert_non_null(strstr(page, "with 4 people the sign-flip p is never below 0.12; it cannot reach 0.05"));
+    assert_non_null(strstr(page, "4 of 4 people did not choose both equally often; with so many the sign-flip "
+                                 "p is never below 0.12 and cannot reach 0.05"));
     free(page);
 }
 

@@ -194,6 +194,30 @@ static void adjusted_values(void **state)
     program_free(&r);
 }
 
+// A staircase with a trial to come has no estimate yet; a level that is no number is named.
+static void only_ended_staircases_have_estimates(void **state)
+{
+    (void)state;
+    staircase_file_make("s.db");
+    study_file_sql(
+        "s.db",
+        "UPDATE trial SET status = 'running' WHERE id = (SELECT max(t.id) FROM trial t JOIN session s ON "
+        "s.id = t.session_id JOIN participant p ON p.id = s.participant_id WHERE p.code = 'P03' AND "
+        "t.block = 'stairs')");
+    study_file_sql("s.db",
+                   "UPDATE staircase_step SET level = 9e999 WHERE id = (SELECT max(c.id) FROM staircase_step c "
+                   "JOIN trial t "
+                   "ON t.id = c.trial_id JOIN session s ON s.id = t.session_id JOIN participant p ON p.id = "
+                   "s.participant_id WHERE p.code = 'P01' AND t.block = 'stairs')");
+    struct program_result r = FOVSTATS("thresholds", "s.db", "--json", "--bootstrap", "0");
+    const char *cell = AFTER(r.out, "\"block\":\"stairs\"");
+    expect_text(AFTER(cell, "\"participant\":\"P03\"", "\"staircase_estimate\":"), "null");
+    expect(AFTER(cell, "\"participant\":\"P02\"", "\"staircase_estimate\":"), 6, 0);
+    expect(AFTER(cell, "\"participant\":\"P01\"", "\"steps\":"), 139, 0);
+    expect(AFTER(r.out, "\"not_finite\":"), 1, 0);
+    program_free(&r);
+}
+
 static void text_is_as_it_was(void **state)
 {
     (void)state;
@@ -306,10 +330,15 @@ static void the_report_has_them(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(staircases_and_fits),   cmocka_unit_test(direction_without_wrong_answers),
-        cmocka_unit_test(no_direction_no_bayes), cmocka_unit_test(constant_levels),
-        cmocka_unit_test(adjusted_values),       cmocka_unit_test(text_is_as_it_was),
-        cmocka_unit_test(options_are_heeded),    cmocka_unit_test(jod_of_a_star),
+        cmocka_unit_test(staircases_and_fits),
+        cmocka_unit_test(direction_without_wrong_answers),
+        cmocka_unit_test(no_direction_no_bayes),
+        cmocka_unit_test(constant_levels),
+        cmocka_unit_test(adjusted_values),
+        cmocka_unit_test(text_is_as_it_was),
+        cmocka_unit_test(only_ended_staircases_have_estimates),
+        cmocka_unit_test(options_are_heeded),
+        cmocka_unit_test(jod_of_a_star),
         cmocka_unit_test(the_report_has_them),
     };
     return cmocka_run_group_tests(tests, enter_folder, leave_folder);

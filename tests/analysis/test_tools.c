@@ -419,7 +419,10 @@ static void several_answers_agree_with_r(void **state)
     program_free(&r);
     study_file_sql("v.db", "DELETE FROM choice WHERE trial_id IN (SELECT id FROM trial WHERE session_id > 5)");
     r = FOVSTATS("choices", "v.db");
-    assert_non_null(strstr(r.out, "with 5 people the sign-flip p is never below 0.062; it cannot reach 0.05"));
+    assert_non_null(strstr(
+        r.out,
+        "5 of 5 people did not choose both equally often; with so many the sign-flip p is never below 0.062 "
+        "and cannot reach 0.05"));
     program_free(&r);
 }
 
@@ -496,11 +499,48 @@ static void repeated_people_are_said(void **state)
     study_file_sql("p.db", "UPDATE session SET participant_id = 1 WHERE id = 2");
     struct program_result r = FOVSTATS("choices", "p.db");
     assert_non_null(strstr(r.out, "Several answers per person"));
-    assert_non_null(strstr(r.out, "People with several sessions: 1;"));
+    assert_non_null(strstr(r.out, "People with several sessions: 1."));
     program_free(&r);
     r = FOVSTATS("ratings", "p.db");
-    assert_non_null(strstr(r.out, "People with several sessions: 1;"));
+    assert_non_null(strstr(r.out, "People with several sessions: 1."));
+    assert_null(strstr(r.out, "somebody rated in both orders"));
     program_free(&r);
+    // The two sittings of one order are one person's; of 11 and 9 people 10 and 9 are left.
+    r = FOVSTATS("ratings", "p.db", "--json");
+    assert_non_null(strstr(r.out, "\"n\":10,"));
+    assert_null(strstr(r.out, "\"n\":11,"));
+    program_free(&r);
+    // Somebody in both groups makes them dependent: no Welch test.
+    study_file_sql("p.db", "UPDATE session SET participant_id = 1 WHERE id = 12");
+    r = FOVSTATS("ratings", "p.db");
+    assert_non_null(strstr(r.out, "First ratings are not compared: somebody rated in both orders."));
+    program_free(&r);
+}
+
+// Of a question with a right answer the right ones are counted, whichever option that was.
+static void right_answers_are_no_preferences(void **state)
+{
+    (void)state;
+    study_file_make("r.db", &(struct study_desc){0});
+    study_file_sql("r.db", "UPDATE choice SET correct = id % 11 > 0");
+    struct program_result r = FOVSTATS("choices", "r.db");
+    assert_non_null(strstr(r.out, "epsilon 0.2, right answers"));
+    assert_null(strstr(r.out, "  6  22"));
+    program_free(&r);
+    r = FOVSTATS("choices", "r.db", "--json");
+    assert_null(strstr(r.out, "\"right_answers\":false"));
+    program_free(&r);
+    r = FOVSTATS("report", "r.db", "-o", "r.html");
+    assert_int_equal(r.code, 0);
+    program_free(&r);
+    char page[400000] = "";
+    FILE *file = fopen("r.html", "r");
+    assert_non_null(file);
+    assert_true(fread(page, 1, sizeof page - 1, file) > 0);
+    fclose(file);
+    assert_non_null(strstr(page, "answers were right more often than by guessing for"));
+    assert_non_null(strstr(page, "right more often</td>"));
+    assert_null(strstr(page, "the reference was preferred"));
 }
 
 // Two labs' files: people add up, cells join.
@@ -536,6 +576,7 @@ int main(void)
         cmocka_unit_test(ratings_agree_with_r),
         cmocka_unit_test(frames_agree_with_r),
         cmocka_unit_test(repeated_people_are_said),
+        cmocka_unit_test(right_answers_are_no_preferences),
         cmocka_unit_test(files_add_up),
     };
     return cmocka_run_group_tests(tests, enter_folder, leave_folder);

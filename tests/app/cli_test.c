@@ -295,6 +295,17 @@ static void a_file_keeps_its_protocol(void **state)
     assert_int_equal(command(HERE "--participant p4", folder, "text.yaml")->status, 0);
     expect(command(HERE "--participant p5", folder, "name.yaml"), 1, "is 'longer'");
     assert_string_equal(command(rows, folder)->out, "4|4|2|1\n");
+    // Another protocol has its own seed, and nobody who is complete in this one is complete in that one.
+    assert_int_equal(command(HERE "--participants 2", folder, "one.yaml")->status, 0);
+    write_protocol("seed.yaml", "^seed: 1", "seed: 2");
+    command("sed -i 's/^name: short/name: longer/' '%s/seed.yaml'", folder);
+    const struct command_result *refused = command(HERE "--participants 2 --new-protocol", folder, "seed.yaml");
+    assert_int_equal(refused->status, 1);
+    assert_non_null(strstr(refused->err, "S001 has a session already"));
+    assert_null(strstr(refused->err, "passed over"));
+    assert_int_equal(command(HERE "--participants 2 --new-protocol --again", folder, "seed.yaml")->status, 0);
+    assert_string_equal(command(rows, folder)->out, "6|8|3|3\n");
+    assert_int_equal(command(HERE "--participant forgotten-5", folder, "one.yaml")->status, 2);
 }
 
 // `--participants N` goes on where it stopped: complete ones stay, an unfinished one is named.
