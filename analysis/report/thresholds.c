@@ -48,7 +48,8 @@ static void fit_person(struct threshold_person *person, const struct threshold_c
 }
 
 // Of people who share one function: their answers at different levels are not independent, and an interval that
-// takes them so is too narrow (its 95 % hold 77 to 88 % where people differ by 1 to 2 logits).
+// takes them so is too narrow (by simulation in R, 800 studies of 22 people
+// at 5 levels, glm: its 95 % hold 88 % where people differ by an SD of 1 logit, 77 % by 2).
 static void drop_intervals(struct threshold_person *person)
 {
     const struct stat_interval none = {(double)NAN, (double)NAN};
