@@ -1,9 +1,11 @@
 #include "app/fovstudy/run_file.h"
 
+#include "studies/protocol/text.h"
 #include "studies/store/read.h"
 
 #include <inttypes.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -12,22 +14,48 @@ enum { SHA256_SHOWN = 12 }; // digits, as `fovstudy check` shows them
 // The protocols of a file's sessions against the one that is to run.
 struct protocols {
     const struct protocol *wanted;
-    bool found, same_name;
+    const char *scenes; // what is to be shown, as store_session_row has it
+    bool found, same_scenes, same_name;
+    char shown[1024]; // of the last session of the same protocol
     char name[PROTOCOL_NAME],
         sha256[SHA256_HEX]; // of the last one; of one with the wanted name, where there is
 };
+
+// Whether two such texts name the same scenes, wherever the files lie.
+static bool same_scenes(const char *a, const char *b)
+{
+    char without[2][2048];
+    const char *const texts[2] = {a, b};
+    for (int i = 0; i < 2; i++) {
+        size_t used = 0, word = 0;
+        for (const char *c = texts[i]; *c && used + 1 < sizeof without[i]; c++) {
+            if (*c == '/') {
+                used = word; // what came before was a folder
+                continue;
+            }
+            without[i][used++] = *c;
+            word = *c == ' ' ? used : word;
+        }
+        without[i][used] = '\0';
+    }
+    return strcmp(without[0], without[1]) == 0;
+}
 
 static bool take_protocol(void *user, const struct store_session_row *row)
 {
     struct protocols *protocols = user;
     bool same_name = strcmp(row->protocol_name, protocols->wanted->name) == 0;
-    protocols->found = strcmp(row->protocol_sha256, protocols->wanted->sha256_hex) == 0;
+    if (strcmp(row->protocol_sha256, protocols->wanted->sha256_hex) == 0) {
+        protocols->found = true;
+        protocols->same_scenes = same_scenes(row->scenes, protocols->scenes);
+        snprintf(protocols->shown, sizeof protocols->shown, "%s", row->scenes);
+    }
     if (same_name || !protocols->same_name) {
         snprintf(protocols->name, sizeof protocols->name, "%s", row->protocol_name);
         snprintf(protocols->sha256, sizeof protocols->sha256, "%s", row->protocol_sha256);
     }
     protocols->same_name = protocols->same_name || same_name;
-    return !protocols->found;
+    return !protocols->same_scenes;
 }
 
 static void say_difference(const struct run_options *options, const struct protocols *protocols, char *error,
@@ -37,7 +65,13 @@ static void say_difference(const struct run_options *options, const struct proto
     static const char way[] =
         "one file is one study: give another --db, or --new-protocol to keep both in this "
         "file, which is logged";
-    if (protocols->same_name)
+    if (protocols->found)
+        snprintf(error, error_size,
+                 "%s: its sessions showed other scenes (%s) than this one would (%s); one study shows "
+                 "everybody the same: "
+                 "bind the same with --scene, or give --new-protocol to go on, which is logged",
+                 options->database, protocols->shown, protocols->scenes);
+    else if (protocols->same_name)
         snprintf(error, error_size,
                  "%s: its sessions are of protocol '%s' with another text (%.*s) than %s has now (%.*s); %s",
                  options->database, protocols->name, SHA256_SHOWN, protocols->sha256, options->protocol,
@@ -47,21 +81,39 @@ static void say_difference(const struct run_options *options, const struct proto
                  options->database, protocols->name, options->protocol, wanted->name, way);
 }
 
+// "town: town:triangles=200000, ..."; NULL where memory ran out.
+static char *scenes_text(const struct run_options *options, const struct protocol *protocol)
+{
+    struct text text = {0};
+    for (uint32_t i = 0; i < protocol->scene_count; i++)
+        text_add(&text, "%s%s: %s", i ? ", " : "", protocol->scenes[i],
+                 study_shown_scene(protocol, i, options->scenes, options->scene_count));
+    return text_take(&text);
+}
+
 bool run_file_protocol(const struct run_options *options, const struct protocol *protocol, char *error,
                        size_t error_size)
 {
-    struct protocols protocols = {.wanted = protocol};
-    struct store_reader *reader = store_reader_open(options->database, error, error_size);
-    if (!reader)
+    char *scenes = scenes_text(options, protocol);
+    if (!scenes) {
+        snprintf(error, error_size, "out of memory");
         return false;
-    bool read = store_read_sessions(reader, take_protocol, &protocols) || protocols.found;
+    }
+    struct protocols protocols = {.wanted = protocol, .scenes = scenes};
+    struct store_reader *reader = store_reader_open(options->database, error, error_size);
+    if (!reader) {
+        free(scenes);
+        return false;
+    }
+    bool read = store_read_sessions(reader, take_protocol, &protocols) || protocols.same_scenes;
     if (!read)
         snprintf(error, error_size, "%s", store_reader_error(reader));
     store_reader_close(reader);
-    if (!read || protocols.found || !protocols.name[0])
-        return read;
-    say_difference(options, &protocols, error, error_size);
-    return false;
+    bool differs = read && !protocols.same_scenes && protocols.name[0];
+    if (differs)
+        say_difference(options, &protocols, error, error_size);
+    free(scenes);
+    return read && !differs;
 }
 
 void run_file_code(uint64_t i, char out[RUN_CODE])

@@ -8,8 +8,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-// One file is one study: false with a sentence where its sessions are of other protocols only, or where it
-// cannot be read. Another text is another protocol, whatever its name.
+// One file is one study: false with a sentence where its sessions are of other protocols only, or showed other
+// scenes, or where it cannot be read. Another text is another protocol, whatever its name.
 bool run_file_protocol(const struct run_options *options, const struct protocol *protocol, char *error,
                        size_t error_size);
 

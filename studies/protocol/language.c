@@ -397,7 +397,11 @@ static const struct language_key model_keys[] = {
     {"threshold", LANGUAGE_MAP, true, .of = "the grid", .about = "Thresholds, in the level's unit.",
      .example = "threshold: {min: 0.01, max: 1, count: 25, spacing: log}"},
     {"slope", LANGUAGE_MAP, true, .of = "the grid",
-     .about = "Slopes, per unit of the level (or of its logarithm).",
+     .about = "Slopes k in F(k (x - threshold)), x the level, or its natural logarithm where the levels have "
+              "'spacing: "
+              "log' or the family is weibull. fovstats thresholds prints the slope of the curve itself, which "
+              "for the "
+              "logistic is k / 4 between its asymptotes.",
      .example = "slope: {min: 1, max: 10, count: 10}"},
     {"guess", LANGUAGE_MAP, false, .of = "the grid",
      .about = "Shares of right answers by guessing; 0.5 of two options. Not with more outcomes than two.",

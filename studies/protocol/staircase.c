@@ -194,6 +194,12 @@ bool staircase_read(struct reader *reader, const struct yaml_node *block_map, st
         desc->level.count = 0;
     if (!model_read(reader, map, &desc->model) || !parameter_of(reader, map, block))
         return false;
+    const struct quest_plus_grid *threshold = &desc->model.threshold, *level = &desc->level;
+    if (adaptive && (threshold->max < level->min || threshold->min > level->max))
+        return read_fail(
+            reader, yaml_get(yaml_get(map, "model"), "threshold"),
+            "the thresholds (%g to %g) all lie outside the levels (%g to %g), so no answer tells them apart",
+            threshold->min, threshold->max, level->min, level->max);
     if (!staircase_check(desc, why, sizeof why))
         return read_fail(reader, blamed(map, why), "%s", why);
     block->repetitions = desc->trials;

@@ -306,6 +306,14 @@ static void a_file_keeps_its_protocol(void **state)
     assert_int_equal(command(HERE "--participants 2 --new-protocol --again", folder, "seed.yaml")->status, 0);
     assert_string_equal(command(rows, folder)->out, "6|8|3|3\n");
     assert_int_equal(command(HERE "--participant forgotten-5", folder, "one.yaml")->status, 2);
+    // Everybody sees the same scene under one name.
+    command("printf 'atrium,0.03,time_warped\\natrium,0.02,time_warped:epsilon=0.05\\n' > '%s/one.csv'",
+            folder);
+    expect(command(HERE "--participant p6 --scene atrium=town", folder, "one.yaml"), 1,
+           "one.db: its sessions showed other scenes (atrium: atrium) than this one would (atrium: town)");
+    assert_int_equal(command(HERE "--participant p6 --scene atrium=atrium", folder, "one.yaml")->status, 0);
+    assert_int_equal(
+        command(HERE "--participant p7 --scene atrium=town --new-protocol", folder, "one.yaml")->status, 0);
 }
 
 // `--participants N` goes on where it stopped: complete ones stay, an unfinished one is named.

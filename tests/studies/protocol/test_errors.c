@@ -315,6 +315,11 @@ static void test_staircases(void **state)
          "threshold and slope"},
         {"main", "kind: toggle", STAIRS("start: 0.5, " QUEST "model: {}"),
          "p.yaml:27:68: method 'quest_plus' takes no 'start'; remove it"},
+        {"main", "kind: toggle",
+         STAIRS(QUEST
+                "model: {family: logistic, threshold: {min: 5, max: 9, count: 3}, slope: {min: 1, max: 2}}"),
+         "p.yaml:27:162: the thresholds (5 to 9) all lie outside the levels (0.1 to 1), so no answer tells "
+         "them apart"},
         {"main", "kind: toggle", STAIRS("method: quest_plus, model: {}, level: {min: 0.1, max: 1}"),
          "p.yaml:27:106: method 'quest_plus' chooses among levels; add how many, as 'count: 25'"},
         {"main", "kind: toggle", "kind: adjust\n    null: 2",
