@@ -28,9 +28,12 @@ static void carry_text(struct text *text, const struct check_report *report)
             continue;
         text_add(text, first ? "\ncarry-over: how often a cell came right after another one\n" : "");
         first = false;
-        text_add(text, "  %s: %u pairs, each %u to %u times; even would be %.3g%s\n",
-                 report->protocol->blocks[b].name, carry->pairs, carry->least, carry->most, carry->even,
-                 carry->least == carry->most ? ": balanced" : "");
+        bool balanced = carry->least == carry->most;
+        text_add(text, "  %s: %u pairs, each %u", report->protocol->blocks[b].name, carry->pairs, carry->least);
+        if (!balanced)
+            text_add(text, " to %u", carry->most);
+        text_add(text, " time%s; even would be %.3g%s\n", carry->most == 1 ? "" : "s", carry->even,
+                 balanced ? ": balanced" : "");
     }
 }
 
@@ -51,7 +54,7 @@ static void duration_text(struct text *text, const struct check_report *report)
         double seconds;
     } parts[] = {{"looking", d->looking},
                  {"fades", d->fading},
-                 {"answers", d->answers},
+                 {"later answers", d->answers},
                  {"other screens", d->screens},
                  {"rests and breaks", d->resting}};
     text_add(text, "\nexpected duration: ");

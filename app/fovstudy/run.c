@@ -12,12 +12,12 @@
 #include <unistd.h>
 
 // What is bound, or stands in, is looked at where nothing is drawn too: it names the errors and the session.
-static bool scenes_are_there(const struct run *run, char *error, size_t error_size)
+static bool scenes_are_there(const struct run_options *options, const struct protocol *protocol, char *error,
+                             size_t error_size)
 {
-    const struct run_options *options = &run->options;
     struct text remarks = {0}; // for `check`
-    bool ok = check_scenes(options->protocol, run->study.protocol, options->scenes, options->scene_count, false,
-                           &remarks, error, error_size);
+    bool ok = check_scenes(options->protocol, protocol, options->scenes, options->scene_count, false, &remarks,
+                           error, error_size);
     free(text_take(&remarks));
     return ok;
 }
@@ -25,6 +25,8 @@ static bool scenes_are_there(const struct run *run, char *error, size_t error_si
 static bool prepare(struct run *run, char *error, size_t error_size)
 {
     const struct run_options *options = &run->options;
+    if (!scenes_are_there(options, run->study.protocol, error, error_size))
+        return false;
     if (strcmp(options->display, "none") == 0 && !run->study.observer.errors[0] &&
         access(options->database, F_OK) != 0) {
         snprintf(error, error_size,
@@ -34,8 +36,7 @@ static bool prepare(struct run *run, char *error, size_t error_size)
                  options->database);
         return false;
     }
-    if (!scenes_are_there(run, error, error_size) ||
-        !run_view_init(&run->view, options, run->study.protocol, error, error_size) ||
+    if (!run_view_init(&run->view, options, run->study.protocol, error, error_size) ||
         !event_lines_open(&run->lines, options->events, error, error_size) ||
         !run_rows_open(&run->rows, options, &run->study, error, error_size) ||
         (!options->new_protocol && !run_file_protocol(options, run->study.protocol, error, error_size)))
@@ -66,6 +67,7 @@ static int pass_over(const struct run_options *options, bool out_complete[RUN_PA
     struct run_study study;
     char error[RUN_ERROR] = "";
     bool ok = run_study_init(&study, options, error, sizeof error) &&
+              scenes_are_there(options, study.protocol, error, sizeof error) &&
               (options->new_protocol || access(options->database, F_OK) != 0 ||
                run_file_protocol(options, study.protocol, error, sizeof error));
     uint64_t complete =

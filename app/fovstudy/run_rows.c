@@ -254,7 +254,9 @@ bool run_rows_reference(struct run_rows *rows, const struct run_study *study, ch
 bool run_rows_finish(struct run_rows *rows, char *error, size_t error_size)
 {
     struct store_error why;
-    bool done = store_close(rows->store, &why) == STORE_OK;
+    enum store_result closed =
+        rows->ids.session_id ? store_close(rows->store, &why) : store_abandon(rows->store, &why);
+    bool done = closed == STORE_OK;
     if (!done)
         snprintf(error, error_size, "%s", why.text);
     plan_destroy(rows->plan);

@@ -51,6 +51,7 @@ static bool find_out(struct run_study *study, const struct protocol_attribute *a
     if (attribute->required && !*json) {
         snprintf(error, error_size, "the protocol wants to know '%s' (%s); give --attribute %s=VALUE",
                  attribute->name, attribute->prompt, attribute->name);
+        study->wrong_usage = !asked; // of a command line that nobody can add to
         return false;
     }
     if (!*json || append(study->attributes, sizeof study->attributes - 1, attribute->name, json))

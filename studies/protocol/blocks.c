@@ -84,7 +84,12 @@ static bool complement_read(struct reader *reader, const struct yaml_node *map, 
     const struct protocol_block *earlier = &protocol->blocks[index];
     if (block->kind != PROTOCOL_RATE || earlier->kind != PROTOCOL_RATE || earlier->complement_of >= 0)
         return read_fail(reader, node,
-                         "a complement is a rate block of an earlier rate block that is none itself");
+                         "a complement is a rate block that rates the other option of an earlier one; %s%s%s",
+                         block->kind == PROTOCOL_RATE ? "block '" : "this is none",
+                         block->kind != PROTOCOL_RATE ? "" : earlier->name,
+                         block->kind != PROTOCOL_RATE     ? ""
+                         : earlier->kind != PROTOCOL_RATE ? "' is none"
+                                                          : "' is a complement itself");
     if (block->option_count != 2 || memcmp(block->options, earlier->options, sizeof block->options) != 0)
         return read_fail(reader, node,
                          "block '%s' and its complement need the same two options in the same order",

@@ -89,9 +89,19 @@ const char *read_nearest(const char *word, const char *const *known)
     return nearest;
 }
 
+// "key:" and nothing after it
+static bool is_empty(const struct yaml_node *node)
+{
+    return node->kind == YAML_SCALAR && !*node->text && !node->quoted;
+}
+
 bool read_unknown(struct reader *reader, const struct yaml_node *node, bool at_key, const char *what,
                   const char *word, const char *const *known)
 {
+    if (at_key && is_empty(node) && strspn(word, "0123456789") == strlen(word))
+        return read_fail_key(reader, node,
+                             "%.60s stands alone: a comma begins another entry; a decimal has a point, as 0.1",
+                             word);
     const char *nearest = read_nearest(word, known);
     struct text list = {0};
     if (nearest)
@@ -109,12 +119,6 @@ bool read_unknown(struct reader *reader, const struct yaml_node *node, bool at_k
     return false;
 }
 
-// "key:" and nothing after it
-static bool is_empty(const struct yaml_node *node)
-{
-    return node->kind == YAML_SCALAR && !*node->text && !node->quoted;
-}
-
 bool read_is_map(struct reader *reader, const struct yaml_node *node, const char *what)
 {
     if (node->kind == YAML_MAP)
@@ -129,8 +133,8 @@ bool read_fail_count(struct reader *reader, const struct yaml_node *node, const 
 {
     const char *entries = node->count == 1 ? "entry" : "entries";
     if (min == max)
-        return read_fail(reader, node, "%s has %u %s; it takes %u", what, node->count, entries, min);
-    return read_fail(reader, node, "%s has %u %s; it takes %u to %u", what, node->count, entries, min, max);
+        return read_fail(reader, node, "%s: %u %s where %u are needed", what, node->count, entries, min);
+    return read_fail(reader, node, "%s: %u %s where %u to %u are needed", what, node->count, entries, min, max);
 }
 
 bool read_is_list(struct reader *reader, const struct yaml_node *node, const char *what, uint32_t min,

@@ -285,12 +285,11 @@ struct store *store_open(const struct store_desc *desc, struct store_error *erro
     store->owner.file = -1;
     store->reading = desc->access == STORE_READ;
     store->busy_ms = desc->busy_ms ? desc->busy_ms : DEFAULT_BUSY_MS;
-    bool made = false;
     enum store_result result = desc->flush_ms <= MAX_FLUSH_MS ? STORE_OK : STORE_REFUSED;
     if (result != STORE_OK)
         sql_say(error, "flush_ms is %u; give 1 to %d, or 0 for the default", desc->flush_ms, MAX_FLUSH_MS);
     if (result == STORE_OK)
-        result = name_file(store, desc, &made, error);
+        result = name_file(store, desc, &store->made, error);
     if (result == STORE_OK)
         result = check_rights(store, error);
     if (result == STORE_OK && !store->reading)
@@ -304,10 +303,35 @@ struct store *store_open(const struct store_desc *desc, struct store_error *erro
     if (result == STORE_OK)
         return store;
     disconnect(store);
-    if (made && store->path)
+    if (store->made && store->path)
         unmake(store->path); // while the owner's lock is held
     release(store);
     return NULL;
+}
+
+static bool has_session(struct store *store)
+{
+    sqlite3_stmt *statement = NULL;
+    int code = sqlite3_prepare_v2(store->db, "SELECT 1 FROM session LIMIT 1", -1, &statement, NULL);
+    if (code == SQLITE_OK)
+        code = sqlite3_step(statement);
+    sqlite3_finalize(statement);
+    return code != SQLITE_DONE; // also where it cannot be told
+}
+
+enum store_result store_abandon(struct store *store, struct store_error *error)
+{
+    if (!store || !store->made || store->reading)
+        return store_close(store, error);
+    sql_say(error, "%s", "");
+    writer_stop(store->writer);
+    store->writer = NULL;
+    bool unused = !has_session(store);
+    disconnect(store);
+    if (unused)
+        unmake(store->path); // while the owner's lock is held
+    release(store);
+    return STORE_OK;
 }
 
 enum store_result store_close(struct store *store, struct store_error *error)

@@ -20,6 +20,7 @@ struct store {
     sqlite3 *db;  // owned
     char *path;   // owned, absolute, no symbolic links
     bool reading; // STORE_READ
+    bool made;    // there was no such file before
     uint32_t busy_ms;
     dev_t device; // of the file as it was opened
     ino_t inode;

@@ -182,7 +182,7 @@ static void carry_over_is_counted(void **state)
     (void)state;
     const char *design = HEAD SCENES "participants: 5\nblocks:\n" TOGGLE
                                      "  order: latin\n  factors: {epsilon: [0.1, 0.2, 0.3, 0.4]}\n";
-    has(check(design, "--counts 4"), "main: 12 pairs, each 1 to 1 times; even would be 1: balanced");
+    has(check(design, "--counts 4"), "main: 12 pairs, each 1 time; even would be 1: balanced");
     const struct command_result *result = check(design, "");
     has(result, "main: 12 pairs, each 1 to 2 times; even would be 1.25\n");
     has(result,
@@ -192,7 +192,7 @@ static void carry_over_is_counted(void **state)
               "blocks:\n" TOGGLE
               "  order: latin\n  factors: {epsilon: [0.1, 0.2], fovea_deg: {between: yes, levels: [5, 10]}}\n",
               "--counts 4"),
-        "main: 4 pairs, each 1 to 1 times");
+        "main: 4 pairs, each 1 time");
 }
 
 static void scenes_are_checked(void **state)

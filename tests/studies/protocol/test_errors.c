@@ -230,7 +230,7 @@ static void test_values(void **state)
          "p.yaml:12:32: scale is a list; write [..., ...] or one '- ' line each"},
         {"", "[0.2, 0.1]", "[0.2, 2]", "p.yaml:29:22: time_warped.epsilon is 2; it must lie between 0 and 1"},
         {"", "[0.2, 0.1]", "[0.2, 0.20]", "p.yaml:29:22: level 0.20 of 'epsilon' stands here twice; keep one"},
-        {"", "[0.2, 0.1]", "[]", "p.yaml:29:16: factor 'epsilon' has 0 entries; it takes 1 to 16"},
+        {"", "[0.2, 0.1]", "[]", "p.yaml:29:16: factor 'epsilon': 0 entries where 1 to 16 are needed"},
         {"", "[atrium, town]", "[atrium, atrium]", "p.yaml:5:18: scene 'atrium' stands here twice; keep one"},
         {"settings", "camera: path", "fade: {gray_s: 11}",
          "p.yaml:15:27: gray_s is 11; it must lie between 0 and 10"},
@@ -253,7 +253,7 @@ static void test_structure(void **state)
         {"", "consent: {version: 1, text: Agree?}", "consent: yes",
          "p.yaml:14:10: consent is a mapping; write 'key: value' below it"},
         {"main", "[foveated, regular]", "[foveated]",
-         "p.yaml:27:14: options of a toggle block has 1 entry; it takes 2"},
+         "p.yaml:27:14: options of a toggle block: 1 entry where 2 are needed"},
         {"main", "[foveated, regular]", "[regular, regular]",
          "p.yaml:27:24: option 'regular' stands here twice; keep one"},
         {"", "name: main", "name: before", "p.yaml:25:11: block 'before' stands here twice; rename one"},
@@ -268,7 +268,8 @@ static void test_structure(void **state)
         {"after", "[foveated, regular]", "[regular, foveated]",
          "p.yaml:34:20: block 'before' and its complement need the same two options in the same order"},
         {"after", "complement_of: before", "complement_of: main",
-         "p.yaml:34:20: a complement is a rate block of an earlier rate block that is none itself"},
+         "p.yaml:34:20: a complement is a rate block that rates the other option of an earlier one; block 'main' is "
+         "none"},
         {"after", "complement_of: before", "repetitions: 2",
          "p.yaml:34:5: a rate block of two options is one rating of the option drawn; for repetitions name one "
          "option"},
