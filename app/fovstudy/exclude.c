@@ -314,9 +314,8 @@ static void say(const struct work *work)
     if (work->request->person || work->request->trial)
         puts(work->added ? "1 taken out.\n" : "It was out by hand already; nothing changed.\n");
     else
-        printf("%zu %s of %zu %s taken out.\n\n", work->added, work->request->protocol ? "late" : "more",
-               work->ruled,
-               work->ruled == 1 ? "session that lacked its rules" : "sessions that lacked their rules");
+        printf("The %srules were applied to %zu session%s that lacked them: %zu taken out.\n\n",
+               work->request->protocol ? "late " : "", work->ruled, work->ruled == 1 ? "" : "s", work->added);
 }
 
 int command_exclude(int argc, char **argv)

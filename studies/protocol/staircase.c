@@ -34,9 +34,15 @@ static bool model_read(struct reader *reader, const struct yaml_node *map, struc
     if (model->outcomes == 2)
         model->guess = (struct quest_plus_grid){.min = 0.5, .max = 0.5, .count = 1}; // two options
     model->lapse = (struct quest_plus_grid){.count = 1};
-    return grid_read(reader, node, "threshold", &model->threshold) &&
-           grid_read(reader, node, "slope", &model->slope) && grid_read(reader, node, "guess", &model->guess) &&
-           grid_read(reader, node, "lapse", &model->lapse);
+    if (!grid_read(reader, node, "threshold", &model->threshold) ||
+        !grid_read(reader, node, "slope", &model->slope) || !grid_read(reader, node, "guess", &model->guess) ||
+        !grid_read(reader, node, "lapse", &model->lapse))
+        return false;
+    if (model->outcomes == 2 && (model->guess.min != 0.5 || model->guess.max != 0.5))
+        read_remark(reader, yaml_get(node, "guess"),
+                    "who guesses between two options is right half of the time, so guess is 0.5; another one "
+                    "makes another threshold");
+    return true;
 }
 
 static bool steps_read(struct reader *reader, const struct yaml_node *map, struct staircase_desc *desc)

@@ -140,12 +140,12 @@ static void a_crashed_session_gets_them_later(void **state)
         "'running', ended_at = NULL");
     const struct command_result *result = exclude("crash.db", "");
     assert_int_equal(result->status, 0);
-    assert_non_null(strstr(result->out, "more of 1 session that lacked its rules taken out."));
+    assert_non_null(strstr(result->out, "The rules were applied to 1 session that lacked them: "));
     assert_non_null(strstr(result->out, "answered after "));
     assert_string_equal(before, ask("crash.db", rows));
     result = exclude("crash.db", "");
     assert_int_equal(result->status, 0);
-    assert_non_null(strstr(result->out, "0 more of 0 sessions"));
+    assert_non_null(strstr(result->out, "to 0 sessions that lacked them: 0 taken out."));
     assert_string_equal(before, ask("crash.db", rows));
     expect("crash.db", "SELECT count(*) FROM event WHERE kind = 'rules_applied'", "1");
     ask("crash.db", "DELETE FROM event WHERE kind = 'rules_applied'"); // as if it were resumed: looked at again
@@ -165,7 +165,7 @@ static void later_rules_are_late(void **state)
     for (int i = 0; i < 2; i++) {
         const struct command_result *result = exclude("late.db", option);
         assert_int_equal(result->status, 0);
-        assert_non_null(strstr(result->out, i ? "0 late of 0 sessions" : " late of 1 session"));
+        assert_non_null(strstr(result->out, i ? "late rules were applied to 0 sessions" : "late rules were applied to 1 session "));
         expect(
             "late.db",
             "SELECT (SELECT count(*) FROM exclusion WHERE rule_set = 'late' AND rule = 'reaction') = count(*), "

@@ -72,6 +72,29 @@ static void test_nothing_to_say(void **state)
     expect_remarks(cases, sizeof cases / sizeof cases[0]);
 }
 
+// Of two options a guess is right half of the time.
+static void test_guesses(void **state)
+{
+    (void)state;
+#define QUEST(guess)                                                                                           \
+    "  right: {text: Which is the original?, correct: reference}\nsettings: {question: right}\n"               \
+    "blocks:\n- {name: a, kind: toggle, options: [foveated, regular], settings: {question: prefer}}\n- name: " \
+    "main\n  kind: staircase\n  options: [foveated, regular]\n"                                                \
+    "  staircase: {parameter: hole_decay, larger: easier, trials: 10, method: quest_plus, "                    \
+    "level: {min: 0.1, max: 1, count: 5},\n"                                                                   \
+    "    model: {family: logistic, threshold: {min: 0.2, max: 0.8, count: 3}, slope: {min: 1, max: 1}" guess   \
+    "}}\n"
+    const struct odd cases[] = {
+        {QUEST(""), ""},
+        {QUEST(", guess: {min: 0.5, max: 0.5}"), ""},
+        {QUEST(", guess: {min: 0.25, max: 0.25}"), "p:22:99: who guesses between two options is right half of "
+                                                   "the time, so guess is 0.5; another one makes "
+                                                   "another threshold"},
+    };
+    expect_remarks(cases, sizeof cases / sizeof cases[0]);
+#undef QUEST
+}
+
 static void test_what_nobody_sees(void **state)
 {
     (void)state;
@@ -268,13 +291,10 @@ static void test_circles(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_nothing_to_say),
-        cmocka_unit_test(test_what_nobody_sees),
-        cmocka_unit_test(test_blocks),
-        cmocka_unit_test(test_people),
-        cmocka_unit_test(test_analysis_and_rules),
-        cmocka_unit_test(test_contradictions),
-        cmocka_unit_test(test_one_thing_sets_a_parameter),
+        cmocka_unit_test(test_nothing_to_say),   cmocka_unit_test(test_guesses),
+        cmocka_unit_test(test_what_nobody_sees), cmocka_unit_test(test_blocks),
+        cmocka_unit_test(test_people),           cmocka_unit_test(test_analysis_and_rules),
+        cmocka_unit_test(test_contradictions),   cmocka_unit_test(test_one_thing_sets_a_parameter),
         cmocka_unit_test(test_circles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
