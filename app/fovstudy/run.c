@@ -41,6 +41,7 @@ static bool prepare(struct run *run, char *error, size_t error_size)
         !run_rows_open(&run->rows, options, &run->study, error, error_size) ||
         (!options->new_protocol && !run_file_protocol(options, run->study.protocol, error, error_size)))
         return false;
+    run_file_remark(options, run->study.protocol, &run->view);
     return run_open_gaze(run, 0, error, error_size) && run_find_errors(run, error, error_size) &&
            run_rows_create(&run->rows, options, &run->study, &run->view, error, error_size) &&
            run_rows_reference(&run->rows, &run->study, error, error_size) &&

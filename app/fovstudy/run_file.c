@@ -4,6 +4,7 @@
 #include "studies/store/read.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -114,6 +115,57 @@ bool run_file_protocol(const struct run_options *options, const struct protocol 
         say_difference(options, &protocols, error, error_size);
     free(scenes);
     return read && !differs;
+}
+
+// What a session is shown on, where frames are drawn.
+struct screen {
+    const char *sha256;
+    double refresh_hz, width_px, height_px, fov_deg; // of this run; 0: nothing is drawn
+    int64_t other;                                   // a session that was shown otherwise; 0: none
+    char was[128];
+};
+
+static void screen_text(double refresh_hz, double width_px, double height_px, double fov_deg, char out[128])
+{
+    snprintf(out, 128, "%g x %g px at %.6g Hz, %.6g degrees high", width_px, height_px, refresh_hz, fov_deg);
+}
+
+static bool take_screen(void *user, const struct store_session_row *row)
+{
+    struct screen *screen = user;
+    char now[128], was[128];
+    if (strcmp(row->protocol_sha256, screen->sha256) != 0 || isnan(row->width_px))
+        return true;
+    screen_text(screen->refresh_hz, screen->width_px, screen->height_px, screen->fov_deg, now);
+    screen_text(row->refresh_hz, row->width_px, row->height_px, row->fov_deg, was);
+    if (strcmp(now, was) == 0)
+        return true;
+    screen->other = row->id;
+    memcpy(screen->was, was, sizeof was);
+    return false;
+}
+
+void run_file_remark(const struct run_options *options, const struct protocol *protocol,
+                     const struct run_view *view)
+{
+    char unused[256], now[128];
+    if (!view->display)
+        return;
+    struct screen screen = {.sha256 = protocol->sha256_hex,
+                            .refresh_hz = view->display->refresh_hz,
+                            .width_px = view->display->width,
+                            .height_px = view->display->height,
+                            .fov_deg = options->fov_deg};
+    struct store_reader *reader = store_reader_open(options->database, unused, sizeof unused);
+    if (reader)
+        store_read_sessions(reader, take_screen, &screen); // what cannot be read was said before
+    store_reader_close(reader);
+    screen_text(screen.refresh_hz, screen.width_px, screen.height_px, screen.fov_deg, now);
+    if (screen.other)
+        fprintf(stderr,
+                "fovstudy: remark: session %" PRId64 " of this study was shown on %s; this one is on %s, and "
+                "the analysis pools them\n",
+                screen.other, screen.was, now);
 }
 
 void run_file_code(uint64_t i, char out[RUN_CODE])

@@ -2,7 +2,7 @@
 #ifndef APP_FOVSTUDY_RUN_FILE_H
 #define APP_FOVSTUDY_RUN_FILE_H
 
-#include "app/fovstudy/run_options.h"
+#include "app/fovstudy/run_study.h"
 #include "studies/protocol/protocol.h"
 
 #include <stdbool.h>
@@ -12,6 +12,10 @@
 // scenes, or where it cannot be read. Another text is another protocol, whatever its name.
 bool run_file_protocol(const struct run_options *options, const struct protocol *protocol, char *error,
                        size_t error_size);
+
+// Says where an earlier session of the protocol was shown at another size, rate or field of view.
+void run_file_remark(const struct run_options *options, const struct protocol *protocol,
+                     const struct run_view *view);
 
 enum { RUN_CODE = 32 }; // bytes, with the end
 // The code of the i-th of --participants, from 1.

@@ -311,6 +311,25 @@ static void a_file_keeps_its_protocol(void **state)
     expect(command(HERE "--participant p6 --scene atrium=town", folder, "one.yaml"), 1,
            "one.db: its sessions showed other scenes (atrium: atrium) than this one would (atrium: town)");
     assert_int_equal(command(HERE "--participant p6 --scene atrium=atrium", folder, "one.yaml")->status, 0);
+    // Another screen is said.
+    static const struct {
+        const char *options, *about;
+    } screens[] = {
+        {"s1 --size 32x36 --refresh 60", ""},
+        {"s2 --size 32x36 --refresh 60", ""},
+        {"s3 --size 48x36 --refresh 90", "session 1 of this study was shown on 32 x 36 px at 60 Hz, 100 "
+                                         "degrees high; this one is on 48 x 36 px "
+                                         "at 90 Hz"},
+    };
+    for (size_t i = 0; i < sizeof screens / sizeof screens[0]; i++) {
+        const struct command_result *shown =
+            command("cd '%s' && fovstudy run one.yaml --db screen.db --display headless --observer sim --scene "
+                    "atrium=town:triangles=20000 --participant %s",
+                    folder, screens[i].options);
+        assert_int_equal(shown->status, 0);
+        assert_non_null(strstr(shown->err, screens[i].about));
+        assert_int_equal(strstr(shown->err, "remark") != NULL, *screens[i].about != '\0');
+    }
     assert_int_equal(
         command(HERE "--participant p7 --scene atrium=town --new-protocol", folder, "one.yaml")->status, 0);
 }
