@@ -6,8 +6,9 @@
 
 // Adding a subcommand: its file, its declaration in command.h, its line here.
 static const struct command *const commands[] = {
-    &command_binom, &command_choices, &command_ratings, &command_thresholds,
-    &command_jod,   &command_frames,  &command_report,  NULL};
+    &command_binom,      &command_choices, &command_ratings, &command_anova,
+    &command_thresholds, &command_jod,     &command_frames,  &command_report,
+    NULL};
 
 static void print_help(FILE *out)
 {
@@ -21,8 +22,8 @@ int main(int argc, char **argv)
 {
     if (argc < 2) {
         fputs(
-            "fovstats: which subcommand? One of binom, choices, ratings, thresholds, jod, frames, report; see "
-            "fovstats --help\n",
+            "fovstats: which subcommand? One of binom, choices, ratings, anova, thresholds, jod, frames, report; "
+            "see fovstats --help\n",
             stderr);
         return EXIT_USAGE;
     }
