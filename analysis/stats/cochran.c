@@ -52,8 +52,8 @@ static double q_of(const struct sums *s)
     return (k - 1) * (k * (double)column_squares(s) - s->all * s->all) / (k * s->all - s->row_squares);
 }
 
-// A person of one answer to all conditions can be arranged in one way only and takes no part in the search. Every
-// other one has two ways at least, so that fewer than 2^63 arrangements have at most 62 such people.
+// A person of one answer to all conditions can be arranged in one way only and takes no part in the search.
+// Every other one has two ways at least, so that fewer than 2^63 arrangements have at most 62 such people.
 enum { MIXED_MOST = 62 };
 
 struct search {
@@ -85,8 +85,8 @@ static void start_columns(struct search *s)
         s->sums.column[j] = s->always;
 }
 
-// Places the yeses that the i-th mixed person has left in the conditions from `from` on, then those of the next.
-// As deep as they have yeses together, at most MIXED_MOST times the conditions.
+// Places the yeses that the i-th mixed person has left in the conditions from `from` on, then those of the
+// next. As deep as they have yeses together, at most MIXED_MOST times the conditions.
 static void place(struct search *s, size_t i, size_t from, size_t left)
 {
     if (left == 0 && i + 1 == s->mixed_count) {

@@ -345,11 +345,13 @@ static void not_finite_is_said(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(anova_is_a_command),
-        cmocka_unit_test(factors_agree_with_r),      cmocka_unit_test(options_agree_with_r),
-        cmocka_unit_test(before_and_after_by_ranks), cmocka_unit_test(the_report_shows_them),
-        cmocka_unit_test(other_rules_change_them),   cmocka_unit_test(what_cannot_be_analysed_is_said),
-        cmocka_unit_test(not_finite_is_said)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(anova_is_a_command),
+                                       cmocka_unit_test(factors_agree_with_r),
+                                       cmocka_unit_test(options_agree_with_r),
+                                       cmocka_unit_test(before_and_after_by_ranks),
+                                       cmocka_unit_test(the_report_shows_them),
+                                       cmocka_unit_test(other_rules_change_them),
+                                       cmocka_unit_test(what_cannot_be_analysed_is_said),
+                                       cmocka_unit_test(not_finite_is_said)};
     return cmocka_run_group_tests(tests, enter_folder, leave_folder);
 }
