@@ -237,8 +237,13 @@ static bool load_thresholds(struct report *r, char *error, size_t error_size)
 
 static bool load(struct report *r, char *error, size_t error_size)
 {
-    return choices_load(&r->choices, r->sample, r->conf, error, error_size) &&
-           ratings_load(&r->ratings, r->sample, r->conf, false, error, error_size) &&
+    if (!choices_load(&r->choices, r->sample, r->conf, error, error_size))
+        return false;
+    if (!choice_factors_load(&r->factors, &r->choices)) {
+        snprintf(error, error_size, "not enough memory");
+        return false;
+    }
+    return ratings_load(&r->ratings, r->sample, r->conf, false, error, error_size) &&
            checks_load(&r->checks, r->sample, r->conf, error, error_size) &&
            frames_load(&r->frames, r->sample, error, error_size) &&
            audit_load(&r->audit, r->sample, error, error_size) && load_thresholds(r, error, error_size) &&
@@ -290,6 +295,7 @@ bool report_write(struct sample *sample, double conf, const char *path, char *er
          draw_frames(&r, error, error_size) && draw_thresholds(&r, error, error_size) &&
          draw_adjusted(&r, error, error_size) && write_to(&r, path, temporary, error, error_size);
     free_figures(&r);
+    choice_factors_free(&r.factors);
     choices_free(&r.choices);
     ratings_free(&r.ratings);
     frames_free(&r.frames);
