@@ -157,6 +157,29 @@ static int by_levels(const void *x, const void *y)
     return order ? order : (a->reference > b->reference) - (a->reference < b->reference);
 }
 
+// Cells may differ in what is no factor, a parameter or the reference: their options then tell them apart.
+static bool tell_apart(struct choices *c, struct sample *sample)
+{
+    for (size_t i = 0; i < c->cell_count; i++) {
+        struct choice_cell *a = &c->cells[i];
+        bool alike = false;
+        if (a->test == SAMPLE_NONE || a->reference == SAMPLE_NONE || a->level_count == 0)
+            continue; // without levels the label is the options
+        for (size_t j = 0; j < c->cell_count && !alike; j++)
+            alike = i != j && strcmp(a->block, c->cells[j].block) == 0 && a->right == c->cells[j].right &&
+                    strcmp(a->factors, c->cells[j].factors) == 0;
+        char label[1024];
+        if (!alike)
+            continue;
+        snprintf(label, sizeof label, "%s, %s or %s", a->label, sample->conditions[a->test].label,
+                 sample->conditions[a->reference].label);
+        a->label = sample_keep(sample, label);
+        if (!a->label)
+            return false;
+    }
+    return true;
+}
+
 static void finish_cell(struct choice_cell *cell, const struct choices_desc *desc)
 {
     choice_cell_test(cell, desc);
@@ -236,7 +259,7 @@ bool choices_load_for(struct choices *out, struct sample *sample, const struct c
         if (!ok && store_reader_error(sample->files[i])[0])
             snprintf(error, error_size, "%s", store_reader_error(sample->files[i]));
     }
-    if (ok && finish(out, &d)) {
+    if (ok && tell_apart(out, sample) && finish(out, &d)) {
         error[0] = '\0';
         return true;
     }
