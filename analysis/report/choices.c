@@ -69,22 +69,28 @@ static struct choice_cell *find_cell(struct filling *f, const struct store_trial
 }
 
 // The counts of a person in a cell; NULL where memory ran out.
-static struct stat_person *find_person(struct choice_cell *cell, size_t person)
+static struct stat_person *find_person(struct choice_cell *cell, size_t person, int64_t **out_equal)
 {
     for (size_t i = 0; i < cell->people; i++)
-        if (cell->person[i] == person)
+        if (cell->person[i] == person) {
+            *out_equal = &cell->equals[i];
             return &cell->counts[i];
+        }
     if (!sample_grow(&cell->person, cell->people, sizeof cell->person[0]) ||
-        !sample_grow(&cell->counts, cell->people, sizeof cell->counts[0]))
+        !sample_grow(&cell->counts, cell->people, sizeof cell->counts[0]) ||
+        !sample_grow(&cell->equals, cell->people, sizeof cell->equals[0]))
         return NULL;
     cell->person[cell->people] = person;
     cell->counts[cell->people] = (struct stat_person){0, 0};
+    cell->equals[cell->people] = 0;
+    *out_equal = &cell->equals[cell->people];
     return &cell->counts[cell->people++];
 }
 
 static bool add_answer(struct choice_cell *cell, const struct store_trial_row *row, size_t person)
 {
-    struct stat_person *counts = find_person(cell, person);
+    int64_t *equal = NULL;
+    struct stat_person *counts = find_person(cell, person, &equal);
     bool toggled = strcmp(row->kind, "toggle") == 0; // there is nothing to switch in a sequential trial
     if (!counts || (toggled && !sample_grow(&cell->toggle, cell->toggled, sizeof cell->toggle[0])))
         return false;
@@ -102,6 +108,7 @@ static bool add_answer(struct choice_cell *cell, const struct store_trial_row *r
     cell->chosen += counted;
     counts->n += row->chosen != '=';
     counts->k += counted;
+    *equal += row->chosen == '=';
     return true;
 }
 
@@ -272,6 +279,7 @@ void choices_free(struct choices *choices)
     for (size_t i = 0; i < choices->cell_count; i++) {
         free(choices->cells[i].person);
         free(choices->cells[i].counts);
+        free(choices->cells[i].equals);
         free(choices->cells[i].toggle);
         free(choices->cells[i].reaction_s);
     }

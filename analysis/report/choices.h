@@ -61,6 +61,7 @@ struct choice_cell {
     size_t people;
     size_t *person;             // index in the sample
     struct stat_person *counts; // without "equal"
+    int64_t *equals;            // "equal"
     // Working arrays, one entry per answer:
     size_t answers;
     size_t toggled;

@@ -48,7 +48,13 @@ static void write_head(const struct report *r)
         fputs("<div class=\"brand\" role=\"note\">SIMULATED DATA: no person took part</div>\n", out);
     fputs("<main>\n<header>\n<h1>", out);
     html_printf(out, "%s%s: study report", simulated ? "SIMULATED DATA \u2013 " : "", title_of(r));
-    fputs("</h1>\n</header>\n", out);
+    fputs("</h1>\n", out);
+    if (r->sample->sessions[0].title[0]) {
+        fputs("<p>", out);
+        html_printf(out, "%s", r->sample->sessions[0].title);
+        fputs("</p>\n", out);
+    }
+    fputs("</header>\n", out);
 }
 
 static bool write_page(const struct report *r, char *error, size_t error_size)

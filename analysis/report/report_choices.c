@@ -232,6 +232,7 @@ void report_choices(const struct report *r)
     choices_notes(r);
     report_people(r);
     report_choice_factors(r);
+    report_choice_three(r);
 }
 
 static void number_cell(FILE *out, double value, const char *unit)

@@ -5,6 +5,7 @@
 #include "analysis/tools/choices_equivalence.h"
 #include "analysis/tools/choices_factors.h"
 #include "analysis/tools/choices_people.h"
+#include "analysis/tools/choices_three.h"
 #include "analysis/tools/study_arguments.h"
 #include "analysis/tools/table.h"
 
@@ -112,7 +113,7 @@ static bool print_text(const struct sample *sample, const struct choices *c,
             printf("%s: %" PRId64 " answers \"equal\" are not part of n.\n", c->cells[i].label,
                    c->cells[i].equal);
     ok = ok && (!c->several || choices_people_print(c)) && choices_factors_print(factors) &&
-         (isnan(margin) || choices_equivalence_print(c, margin));
+         choices_three_print(c) && (isnan(margin) || choices_equivalence_print(c, margin));
     print_notes(sample, c);
     return ok;
 }
@@ -156,7 +157,7 @@ static void cell_json(struct json *json, const struct sample *sample, const stru
     json_close(json, '}');
 }
 
-static void print_json(const struct sample *sample, const struct choices *c,
+static bool print_json(const struct sample *sample, const struct choices *c,
                        const struct choice_factors *factors, double margin)
 {
     struct json json = {stdout, false};
@@ -171,6 +172,7 @@ static void print_json(const struct sample *sample, const struct choices *c,
     json_close(&json, ']');
     choices_contrasts_json(&json, c);
     choices_factors_json(&json, factors);
+    bool ok = choices_three_json(&json, c);
     if (!isnan(margin))
         choices_equivalence_json(&json, c, margin);
     json_integer(&json, "answers", c->answers);
@@ -186,6 +188,7 @@ static void print_json(const struct sample *sample, const struct choices *c,
     json_close(&json, '}');
     json_close(&json, '}');
     putchar('\n');
+    return ok;
 }
 
 // Checks what was typed. Returns -1 to go on, else the exit code after a sentence.
@@ -249,8 +252,9 @@ static int run(const struct command *command, int argc, char **argv)
     } else if (!choice_factors_load(&factors, &c)) {
         code = command_fail(command, EXIT_FAILED, "not enough memory");
     } else if (arguments.json) {
-        print_json(&sample, &c, &factors, margin);
-        code = command_finish(command);
+        code = print_json(&sample, &c, &factors, margin)
+                   ? command_finish(command)
+                   : command_fail(command, EXIT_FAILED, "not enough memory");
     } else {
         study_title(&sample, "Choices");
         code = print_text(&sample, &c, &factors, margin)
