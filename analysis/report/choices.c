@@ -181,7 +181,10 @@ static bool tell_apart(struct choices *c, struct sample *sample)
         snprintf(label, sizeof label, "%s, %s or %s", a->label, sample->conditions[a->test].label,
                  sample->conditions[a->reference].label);
         a->label = sample_keep(sample, label);
-        if (!a->label)
+        snprintf(label, sizeof label, "%s or %s", sample->conditions[a->test].words,
+                 sample->conditions[a->reference].words);
+        a->options = sample_keep(sample, label);
+        if (!a->label || !a->options)
             return false;
     }
     return true;
