@@ -69,22 +69,28 @@ static struct choice_cell *find_cell(struct filling *f, const struct store_trial
 }
 
 // The counts of a person in a cell; NULL where memory ran out.
-static struct stat_person *find_person(struct choice_cell *cell, size_t person)
+static struct stat_person *find_person(struct choice_cell *cell, size_t person, int64_t **out_equal)
 {
     for (size_t i = 0; i < cell->people; i++)
-        if (cell->person[i] == person)
+        if (cell->person[i] == person) {
+            *out_equal = &cell->equals[i];
             return &cell->counts[i];
+        }
     if (!sample_grow(&cell->person, cell->people, sizeof cell->person[0]) ||
-        !sample_grow(&cell->counts, cell->people, sizeof cell->counts[0]))
+        !sample_grow(&cell->counts, cell->people, sizeof cell->counts[0]) ||
+        !sample_grow(&cell->equals, cell->people, sizeof cell->equals[0]))
         return NULL;
     cell->person[cell->people] = person;
     cell->counts[cell->people] = (struct stat_person){0, 0};
+    cell->equals[cell->people] = 0;
+    *out_equal = &cell->equals[cell->people];
     return &cell->counts[cell->people++];
 }
 
 static bool add_answer(struct choice_cell *cell, const struct store_trial_row *row, size_t person)
 {
-    struct stat_person *counts = find_person(cell, person);
+    int64_t *equal = NULL;
+    struct stat_person *counts = find_person(cell, person, &equal);
     bool toggled = strcmp(row->kind, "toggle") == 0; // there is nothing to switch in a sequential trial
     if (!counts || (toggled && !sample_grow(&cell->toggle, cell->toggled, sizeof cell->toggle[0])))
         return false;
@@ -102,6 +108,7 @@ static bool add_answer(struct choice_cell *cell, const struct store_trial_row *r
     cell->chosen += counted;
     counts->n += row->chosen != '=';
     counts->k += counted;
+    *equal += row->chosen == '=';
     return true;
 }
 
@@ -155,6 +162,32 @@ static int by_levels(const void *x, const void *y)
     if (order == 0)
         order = (a->test > b->test) - (a->test < b->test);
     return order ? order : (a->reference > b->reference) - (a->reference < b->reference);
+}
+
+// Cells may differ in what is no factor, a parameter or the reference: their options then tell them apart.
+static bool tell_apart(struct choices *c, struct sample *sample)
+{
+    for (size_t i = 0; i < c->cell_count; i++) {
+        struct choice_cell *a = &c->cells[i];
+        bool alike = false;
+        if (a->test == SAMPLE_NONE || a->reference == SAMPLE_NONE || a->level_count == 0)
+            continue; // without levels the label is the options
+        for (size_t j = 0; j < c->cell_count && !alike; j++)
+            alike = i != j && strcmp(a->block, c->cells[j].block) == 0 && a->right == c->cells[j].right &&
+                    strcmp(a->factors, c->cells[j].factors) == 0;
+        char label[1024];
+        if (!alike)
+            continue;
+        snprintf(label, sizeof label, "%s, %s or %s", a->label, sample->conditions[a->test].label,
+                 sample->conditions[a->reference].label);
+        a->label = sample_keep(sample, label);
+        snprintf(label, sizeof label, "%s or %s", sample->conditions[a->test].words,
+                 sample->conditions[a->reference].words);
+        a->options = sample_keep(sample, label);
+        if (!a->label || !a->options)
+            return false;
+    }
+    return true;
 }
 
 static void finish_cell(struct choice_cell *cell, const struct choices_desc *desc)
@@ -236,7 +269,7 @@ bool choices_load_for(struct choices *out, struct sample *sample, const struct c
         if (!ok && store_reader_error(sample->files[i])[0])
             snprintf(error, error_size, "%s", store_reader_error(sample->files[i]));
     }
-    if (ok && finish(out, &d)) {
+    if (ok && tell_apart(out, sample) && finish(out, &d)) {
         error[0] = '\0';
         return true;
     }
@@ -249,6 +282,7 @@ void choices_free(struct choices *choices)
     for (size_t i = 0; i < choices->cell_count; i++) {
         free(choices->cells[i].person);
         free(choices->cells[i].counts);
+        free(choices->cells[i].equals);
         free(choices->cells[i].toggle);
         free(choices->cells[i].reaction_s);
     }

@@ -37,10 +37,11 @@ struct choice_cell {
     size_t test, reference;      // conditions
     struct choice_level levels[CHOICE_LEVELS];
     size_t level_count;
-    const char *label; // its levels, or its options where there are none
-    bool right;        // the question has a right answer: `chosen` counts those, not preferences
-    bool name_block;   // other cells are of other blocks
-    int64_t n, chosen; // without "equal"; for the test option
+    const char *label;   // its levels, or its options where there are none
+    const char *options; // words that tell it from another cell of the same levels; NULL where there is none
+    bool right;          // the question has a right answer: `chosen` counts those, not preferences
+    bool name_block;     // other cells are of other blocks
+    int64_t n, chosen;   // without "equal"; for the test option
     int64_t equal;
     bool several; // somebody answered more than once
     // The test that the data ask for; NaN where n is 0:
@@ -61,6 +62,7 @@ struct choice_cell {
     size_t people;
     size_t *person;             // index in the sample
     struct stat_person *counts; // without "equal"
+    int64_t *equals;            // "equal"
     // Working arrays, one entry per answer:
     size_t answers;
     size_t toggled;

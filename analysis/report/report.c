@@ -48,7 +48,13 @@ static void write_head(const struct report *r)
         fputs("<div class=\"brand\" role=\"note\">SIMULATED DATA: no person took part</div>\n", out);
     fputs("<main>\n<header>\n<h1>", out);
     html_printf(out, "%s%s: study report", simulated ? "SIMULATED DATA \u2013 " : "", title_of(r));
-    fputs("</h1>\n</header>\n", out);
+    fputs("</h1>\n", out);
+    if (r->sample->sessions[0].title[0]) {
+        fputs("<p>", out);
+        html_printf(out, "%s", r->sample->sessions[0].title);
+        fputs("</p>\n", out);
+    }
+    fputs("</header>\n", out);
 }
 
 static bool write_page(const struct report *r, char *error, size_t error_size)
@@ -237,8 +243,13 @@ static bool load_thresholds(struct report *r, char *error, size_t error_size)
 
 static bool load(struct report *r, char *error, size_t error_size)
 {
-    return choices_load(&r->choices, r->sample, r->conf, error, error_size) &&
-           ratings_load(&r->ratings, r->sample, r->conf, false, error, error_size) &&
+    if (!choices_load(&r->choices, r->sample, r->conf, error, error_size))
+        return false;
+    if (!choice_factors_load(&r->factors, &r->choices)) {
+        snprintf(error, error_size, "not enough memory");
+        return false;
+    }
+    return ratings_load(&r->ratings, r->sample, r->conf, false, error, error_size) &&
            checks_load(&r->checks, r->sample, r->conf, error, error_size) &&
            frames_load(&r->frames, r->sample, error, error_size) &&
            audit_load(&r->audit, r->sample, error, error_size) && load_thresholds(r, error, error_size) &&
@@ -290,6 +301,7 @@ bool report_write(struct sample *sample, double conf, const char *path, char *er
          draw_frames(&r, error, error_size) && draw_thresholds(&r, error, error_size) &&
          draw_adjusted(&r, error, error_size) && write_to(&r, path, temporary, error, error_size);
     free_figures(&r);
+    choice_factors_free(&r.factors);
     choices_free(&r.choices);
     ratings_free(&r.ratings);
     frames_free(&r.frames);

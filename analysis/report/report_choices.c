@@ -14,7 +14,8 @@ void report_cell_words(const struct choice_cell *cell, char out[256])
         level_join(cell, 0, cell->level_count, words);
     else
         snprintf(words, sizeof words, "%s", cell->label);
-    snprintf(out, 256, "%s%s%.200s%s", cell->name_block ? cell->block : "", cell->name_block ? ": " : "", words,
+    snprintf(out, 256, "%s%s%.120s%s%.80s%s", cell->name_block ? cell->block : "", cell->name_block ? ": " : "",
+             words, cell->options ? ", " : "", cell->options ? cell->options : "",
              cell->right && cell->level_count ? ", right answers" : "");
 }
 
@@ -231,6 +232,8 @@ void report_choices(const struct report *r)
     choices_table(r);
     choices_notes(r);
     report_people(r);
+    report_choice_factors(r);
+    report_choice_three(r);
 }
 
 static void number_cell(FILE *out, double value, const char *unit)

@@ -8,12 +8,53 @@
 static const struct {
     const char *plan, *section; // as store_session_row has plans
 } answers[] = {
-    {"binomial choice cell", "Choices"},       {"mean toggles study", "Toggles before answering"},
-    {"unpaired_t rating order", "Ratings"},    {"paired_t rating order", "Ratings"},
-    {"paired_t rating cell", "Ratings"},       {"anova rating factor", "Ratings"},
-    {"paired_t rating factor", "Ratings"},     {"mean rating factor", "Ratings"},
-    {"mean adjusted cell", "Adjusted values"}, {"mean threshold cell", "Thresholds"},
+    {"binomial choice cell", "Choices"},
+    {"mean toggles study", "Toggles before answering"},
+    {"unpaired_t rating order", "Ratings"},
+    {"paired_t rating order", "Ratings"},
+    {"paired_t rating cell", "Ratings"},
+    {"anova rating factor", "Ratings"},
+    {"paired_t rating factor", "Ratings"},
+    {"mean rating factor", "Ratings"},
+    {"mean adjusted cell", "Adjusted values"},
+    {"mean threshold cell", "Thresholds"},
+    {"binomial choice -", "Choices"},
+    {"mean choice cell", "Choices"},
+    {"mean toggles cell", "Toggles before answering"},
 };
+
+// Planned, and answered otherwise or not at all: why.
+static const struct {
+    const char *plan, *why;
+} reasons[] = {
+    {"anova rating cell",
+     "an analysis of variance compares levels of factors; it stands in section \u201cRatings\u201d"},
+    {"binomial choice study",
+     "a person\u2019s cells are never joined; each cell is tested in section \u201cChoices\u201d"},
+    {"binomial choice scene",
+     "a person\u2019s cells are never joined; each cell is tested in section \u201cChoices\u201d"},
+};
+
+// Answered by the comparison of levels, if there is one: which needs cells that differ in one factor alone.
+static const char *levels_answer(const struct report *r, const char *plan)
+{
+    if (strcmp(plan, "binomial choice factor") != 0 && strcmp(plan, "paired_t choice factor") != 0)
+        return NULL;
+    return r->factors.count + r->choices.contrast_count
+               ? "levels of factors are compared in section \u201cChoices\u201d, by the test that the data "
+                 "permit"
+               : "no two cells differ in one factor alone, so no levels are compared; each cell is tested in "
+                 "section "
+                 "\u201cChoices\u201d";
+}
+
+static const char *reason_of(const struct report *r, const char *plan)
+{
+    for (size_t i = 0; i < sizeof reasons / sizeof reasons[0]; i++)
+        if (strcmp(reasons[i].plan, plan) == 0)
+            return reasons[i].why;
+    return levels_answer(r, plan);
+}
 
 static const char *answer_of(const char *plan)
 {
@@ -63,6 +104,8 @@ static size_t write_session(const struct report *r, size_t session, size_t count
         write_plan(r->out, line);
         if (section)
             fprintf(r->out, ": section \u201c%s\u201d</li>\n", section);
+        else if (reason_of(r, line))
+            fprintf(r->out, ": %s</li>\n", reason_of(r, line));
         else
             fputs(": <strong>not computed by this version</strong></li>\n", r->out);
     }

@@ -34,7 +34,7 @@ struct sample_session {
     bool simulated_clock;
     int64_t segments;
     const char *scenes, *observer; // "" where not known
-    const char *planned;           // as store_session_row has it
+    const char *planned, *title;   // as store_session_row has them
     bool excluded;                 // or its participant
 };
 

@@ -75,11 +75,13 @@ static bool add_session(void *user, const struct store_session_row *row)
         .scenes = row->scenes,
         .observer = row->observer,
         .planned = row->planned,
+        .title = row->title,
     };
     const char **texts[] = {&session.status,        &session.started_at,      &session.ended_at,
                             &session.protocol_name, &session.protocol_sha256, &session.device,
                             &session.driver,        &session.display,         &session.app_version,
-                            &session.scenes,        &session.observer,        &session.planned};
+                            &session.scenes,        &session.observer,        &session.planned,
+                            &session.title};
     if (session.person == SAMPLE_NONE || !sample_keep_all(s, texts, sizeof texts / sizeof texts[0]) ||
         !sample_grow(&s->sessions, s->session_count, sizeof s->sessions[0]))
         return false;

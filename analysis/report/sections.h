@@ -5,6 +5,7 @@
 #include "analysis/report/adjusted.h"
 #include "analysis/report/audit.h"
 #include "analysis/report/checks.h"
+#include "analysis/report/choice_factors.h"
 #include "analysis/report/choices.h"
 #include "analysis/report/frames.h"
 #include "analysis/report/jod.h"
@@ -33,6 +34,7 @@ struct report {
     struct sample *sample;
     double conf;
     struct choices choices;
+    struct choice_factors factors;
     struct ratings ratings;
     struct frames frames;
     struct checks checks;
@@ -52,7 +54,9 @@ void report_methods(const struct report *r);
 void report_planned(const struct report *r);         // what the protocol planned, and where it is answered
 void report_choices_methods(const struct report *r); // sentences
 void report_choices(const struct report *r);
-void report_people(const struct report *r); // cells with several answers per person
+void report_choice_three(const struct report *r); // where "equal" was an answer
+void report_choice_factors(const struct report *r); // levels compared, where people did not answer several
+void report_people(const struct report *r);         // cells with several answers per person
 void report_cell_words(const struct choice_cell *cell, char out[256]);
 void report_toggles(const struct report *r);
 void report_ratings(const struct report *r);

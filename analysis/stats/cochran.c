@@ -52,29 +52,53 @@ static double q_of(const struct sums *s)
     return (k - 1) * (k * (double)column_squares(s) - s->all * s->all) / (k * s->all - s->row_squares);
 }
 
+// A person of one answer to all conditions can be arranged in one way only and takes no part in the search.
+// Every other one has two ways at least, so that fewer than 2^63 arrangements have at most 62 such people.
+enum { MIXED_MOST = 62 };
+
 struct search {
     const unsigned char *answers;
     size_t people;
     struct sums sums; // columns of the arrangement at hand
+    int64_t always;   // people of yes to all conditions: in every column of every arrangement
+    size_t mixed[MIXED_MOST], mixed_count;
     int64_t data, reached, arrangements;
 };
 
-// Places the yeses that person `i` has left in the conditions from `from` on, then those of the next one.
+static size_t yeses(const struct search *s, size_t person)
+{
+    size_t row = 0;
+    for (size_t j = 0; j < s->sums.conditions; j++)
+        row += s->answers[person * s->sums.conditions + j];
+    return row;
+}
+
+static bool is_mixed(const struct search *s, size_t person)
+{
+    size_t row = yeses(s, person);
+    return row > 0 && row < s->sums.conditions;
+}
+
+static void start_columns(struct search *s)
+{
+    for (size_t j = 0; j < s->sums.conditions; j++)
+        s->sums.column[j] = s->always;
+}
+
+// Places the yeses that the i-th mixed person has left in the conditions from `from` on, then those of the
+// next. As deep as they have yeses together, at most MIXED_MOST times the conditions.
 static void place(struct search *s, size_t i, size_t from, size_t left)
 {
-    size_t k = s->sums.conditions;
-    if (left == 0 && i + 1 == s->people) {
+    if (left == 0 && i + 1 == s->mixed_count) {
         s->arrangements++;
         s->reached += column_squares(&s->sums) >= s->data;
         return;
     }
     if (left == 0) {
-        for (size_t j = 0; j < k; j++)
-            left += s->answers[(i + 1) * k + j];
-        place(s, i + 1, 0, left);
+        place(s, i + 1, 0, yeses(s, s->mixed[i + 1]));
         return;
     }
-    for (size_t j = from; j + left <= k; j++) {
+    for (size_t j = from; j + left <= s->sums.conditions; j++) {
         s->sums.column[j]++;
         place(s, i, j + 1, left - 1);
         s->sums.column[j]--;
@@ -83,11 +107,11 @@ static void place(struct search *s, size_t i, size_t from, size_t left)
 
 static void try_all(struct search *s)
 {
-    size_t left = 0;
-    for (size_t j = 0; j < s->sums.conditions; j++)
-        left += s->answers[j];
-    memset(s->sums.column, 0, sizeof s->sums.column);
-    place(s, 0, 0, left);
+    for (size_t i = 0; i < s->people && s->mixed_count < MIXED_MOST; i++)
+        if (is_mixed(s, i))
+            s->mixed[s->mixed_count++] = i;
+    start_columns(s);
+    place(s, 0, 0, yeses(s, s->mixed[0]));
 }
 
 // A person's answers in a random order: Fisher and Yates' shuffle.
@@ -110,9 +134,10 @@ static void draw(struct search *s, struct stat_permuting how)
 {
     uint64_t counter = 0;
     for (s->arrangements = 0; s->arrangements < how.draws; s->arrangements++) {
-        memset(s->sums.column, 0, sizeof s->sums.column);
+        start_columns(s);
         for (size_t i = 0; i < s->people; i++, counter += STAT_COCHRAN_CONDITIONS + 1)
-            shuffle_person(s, i, how.seed, counter);
+            if (is_mixed(s, i))
+                shuffle_person(s, i, how.seed, counter);
         s->reached += column_squares(&s->sums) >= s->data;
     }
 }
@@ -130,6 +155,8 @@ struct stat_cochran stat_cochran_q(const unsigned char *answers, size_t people, 
     out.df = (double)conditions - 1;
     out.p_value = pchisq(out.statistic, out.df, false, false);
     s.data = column_squares(&s.sums);
+    for (size_t i = 0; i < people; i++)
+        s.always += yeses(&s, i) == conditions;
     bool exact = s.sums.arrangements <= (double)how.exact_most;
     if (exact)
         try_all(&s);

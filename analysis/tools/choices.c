@@ -2,7 +2,10 @@
 
 #include "analysis/tools/arguments.h"
 #include "analysis/tools/binomial_json.h"
+#include "analysis/tools/choices_equivalence.h"
+#include "analysis/tools/choices_factors.h"
 #include "analysis/tools/choices_people.h"
+#include "analysis/tools/choices_three.h"
 #include "analysis/tools/study_arguments.h"
 #include "analysis/tools/table.h"
 
@@ -12,8 +15,8 @@
 #include <string.h>
 
 static const char help[] =
-    "usage: fovstats choices DB... [--p P] [--alternative two-sided|less|greater] [--conf C] [--simulated]\n"
-    "                        [--json]\n"
+    "usage: fovstats choices DB... [--p P] [--alternative two-sided|less|greater] [--conf C] [--margin M]\n"
+    "                        [--simulated] [--json]\n"
     "\n"
     "How often the test option was chosen, per cell (block, factor levels and options), tested against one\n"
     "half, with toggles before answering and reaction time. Left and right are resolved by the stored test "
@@ -31,7 +34,10 @@ static const char help[] =
     "test of one half (the t-test of the people's shares against another P), the t interval of the shares, and "
     "a\n"
     "logistic mixed model; the binomial test of all answers stands below as the papers have it. Holm's p is\n"
-    "adjusted for all cells with an answer.\n";
+    "adjusted for all cells with an answer.\n"
+    "Levels of a factor: between people Fisher's exact test of one answer each, else people are exchanged;\n"
+    "within people McNemar's test or Cochran's Q of one answer each, else the t-test of each person's "
+    "difference.\n";
 
 static const char *const alternatives[] = {"two-sided", "less", "greater"};
 
@@ -79,7 +85,8 @@ static void cell_row(struct table *t, const struct choice_cell *cell)
     number_cell(t, cell->reaction_median_s);
 }
 
-static bool print_text(const struct sample *sample, const struct choices *c)
+static bool print_text(const struct sample *sample, const struct choices *c,
+                       const struct choice_factors *factors, double margin)
 {
     char ci[32];
     snprintf(ci, sizeof ci, "%g %% CI", 100 * c->conf);
@@ -105,7 +112,8 @@ static bool print_text(const struct sample *sample, const struct choices *c)
         if (c->cells[i].equal)
             printf("%s: %" PRId64 " answers \"equal\" are not part of n.\n", c->cells[i].label,
                    c->cells[i].equal);
-    ok = ok && (!c->several || choices_people_print(c));
+    ok = ok && (!c->several || choices_people_print(c)) && choices_factors_print(factors) &&
+         choices_three_print(c) && (isnan(margin) || choices_equivalence_print(c, margin));
     print_notes(sample, c);
     return ok;
 }
@@ -149,7 +157,8 @@ static void cell_json(struct json *json, const struct sample *sample, const stru
     json_close(json, '}');
 }
 
-static void print_json(const struct sample *sample, const struct choices *c)
+static bool print_json(const struct sample *sample, const struct choices *c,
+                       const struct choice_factors *factors, double margin)
 {
     struct json json = {stdout, false};
     json_open(&json, NULL, '{');
@@ -162,6 +171,10 @@ static void print_json(const struct sample *sample, const struct choices *c)
         cell_json(&json, sample, &c->cells[i], c->conf);
     json_close(&json, ']');
     choices_contrasts_json(&json, c);
+    choices_factors_json(&json, factors);
+    bool ok = choices_three_json(&json, c);
+    if (!isnan(margin))
+        choices_equivalence_json(&json, c, margin);
     json_integer(&json, "answers", c->answers);
     json_number(&json, "toggles_mean", c->toggles.mean);
     json_number(&json, "toggles_sd", c->toggles.sd);
@@ -175,6 +188,7 @@ static void print_json(const struct sample *sample, const struct choices *c)
     json_close(&json, '}');
     json_close(&json, '}');
     putchar('\n');
+    return ok;
 }
 
 // Checks what was typed. Returns -1 to go on, else the exit code after a sentence.
@@ -192,18 +206,36 @@ static int check(const struct command *command, const char *word, struct choices
     return -1;
 }
 
+static int check_margin(const struct command *command, double margin, double p0, double conf)
+{
+    if (isnan(margin))
+        return -1;
+    if (!(margin > 0 && p0 - margin >= 0 && p0 + margin <= 1))
+        return command_fail(command, EXIT_USAGE,
+                            "--margin is %g but must be above 0, and %g less or plus it must be from 0 to 1",
+                            margin, p0);
+    if (!(conf > 0.5))
+        return command_fail(command, EXIT_USAGE, "--conf is %g but --margin needs more than 0.5", conf);
+    return -1;
+}
+
 static int run(const struct command *command, int argc, char **argv)
 {
     struct study_arguments arguments;
     struct sample sample;
     struct choices_desc desc = {.p0 = 0.5};
     const char *word = alternatives[0];
-    const struct option own[] = {{"--p", OPTION_NUMBER, &desc.p0}, {"--alternative", OPTION_TEXT, &word}};
+    double margin = (double)NAN;
+    const struct option own[] = {{"--p", OPTION_NUMBER, &desc.p0},
+                                 {"--alternative", OPTION_TEXT, &word},
+                                 {"--margin", OPTION_NUMBER, &margin}};
     int code = study_arguments_load_with(command, argc, argv, false, own, sizeof own / sizeof own[0],
                                          &arguments, &sample);
     if (code >= 0)
         return code;
     code = check(command, word, &desc);
+    if (code < 0)
+        code = check_margin(command, margin, desc.p0, arguments.conf);
     if (code >= 0) {
         sample_free(&sample);
         return code;
@@ -211,19 +243,25 @@ static int run(const struct command *command, int argc, char **argv)
     desc.conf = arguments.conf;
     char error[SAMPLE_ERROR_SIZE];
     struct choices c;
+    struct choice_factors factors = {0};
     if (!choices_load_for(&c, &sample, &desc, error, sizeof error)) {
         code = command_fail(command, EXIT_FAILED, "%s", error);
     } else if (c.cell_count == 0) {
         code = command_fail(command, EXIT_FAILED, "%s: no choice was recorded that counts",
                             store_reader_path(sample.files[0]));
+    } else if (!choice_factors_load(&factors, &c)) {
+        code = command_fail(command, EXIT_FAILED, "not enough memory");
     } else if (arguments.json) {
-        print_json(&sample, &c);
-        code = command_finish(command);
+        code = print_json(&sample, &c, &factors, margin)
+                   ? command_finish(command)
+                   : command_fail(command, EXIT_FAILED, "not enough memory");
     } else {
         study_title(&sample, "Choices");
-        code = print_text(&sample, &c) ? command_finish(command)
-                                       : command_fail(command, EXIT_FAILED, "not enough memory");
+        code = print_text(&sample, &c, &factors, margin)
+                   ? command_finish(command)
+                   : command_fail(command, EXIT_FAILED, "not enough memory");
     }
+    choice_factors_free(&factors);
     choices_free(&c);
     sample_free(&sample);
     return code;

@@ -96,6 +96,8 @@ static char *settings_json(const struct run_options *options, const struct run_s
         fprintf(out, ",\"step_hz\":%.17g", run_step_hz(options));
     fprintf(out, ",\"protocol_file\":"); // resume looks whether it is still the same
     json_path(out, options->protocol);
+    fprintf(out, ",\"title\":");
+    json_string(out, study->protocol->title);
     fprintf(out, ",\"scenes\":{");
     for (uint32_t i = 0; i < study->protocol->scene_count; i++) {
         fprintf(out, "%s", i ? "," : "");

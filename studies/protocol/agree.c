@@ -266,6 +266,23 @@ static const char *plural(const char *of)
                                           : of;
 }
 
+// What the language permits and no analysis can mean.
+static void analysis_sense_remark(struct reader *reader, const struct yaml_node *node, uint32_t index)
+{
+    const struct protocol_analysis *all = reader->protocol->analyses, *a = &all[index];
+    for (uint32_t i = 0; i < index; i++)
+        if (strcmp(all[i].method, a->method) == 0 && strcmp(all[i].of, a->of) == 0 &&
+            strcmp(all[i].per, a->per) == 0) {
+            read_remark(reader, node, "this analysis is planned twice, as number %u and %u; remove one", i + 1,
+                        index + 1);
+            break;
+        }
+    if (strcmp(a->method, "anova") == 0 && *a->per && strcmp(a->per, "factor") != 0)
+        read_remark(reader, yaml_get(node, "per"),
+                    "an analysis of variance compares levels of factors, not each %s; write 'per: factor'",
+                    a->per);
+}
+
 static void analysis_remark(struct reader *reader, const struct yaml_node *root)
 {
     const struct protocol *protocol = reader->protocol;
@@ -280,6 +297,7 @@ static void analysis_remark(struct reader *reader, const struct yaml_node *root)
         else if (strcmp(a->method, "binomial") == 0 && strcmp(a->of, "choice") != 0)
             read_remark(reader, yaml_get(node, "method"), "the binomial test counts choices, not %s",
                         plural(a->of));
+        analysis_sense_remark(reader, node, i);
         if (strcmp(a->per, "order") == 0 && !any_block(protocol, is_complement, 0))
             read_remark(reader, yaml_get(node, "per"),
                         "no rate block has its complement, so there are no orders to split by");

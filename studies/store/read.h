@@ -46,6 +46,7 @@ struct store_session_row {
     // The planned analyses, a line each: "METHOD OF PER", PER "-" where there is none; "" where none was
     // planned, or an earlier version recorded the session.
     const char *planned;
+    const char *title; // of the study; "" where an earlier version recorded the session
 };
 
 // A member of a JSON object: a factor, a parameter, an attribute.

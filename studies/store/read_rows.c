@@ -81,6 +81,7 @@ static bool session_row(sqlite3_stmt *s, const struct call *call)
         .scenes = text(s, 21),
         .observer = text(s, 22),
         .planned = text(s, 23),
+        .title = text(s, 24),
     };
     return call->session(call->user, &row);
 }
@@ -100,7 +101,8 @@ bool store_read_sessions(struct store_reader *reader, store_session_fn each, voi
         " coalesce((SELECT group_concat(key || ' ' || printf('%g', value), ', ')"
         "           FROM json_each(s.settings, '$.observer')), ''),"
         " coalesce((SELECT group_concat((value ->> '$.method') || ' ' || (value ->> '$.of') || ' ' ||"
-        "   (value ->> '$.per'), char(10)) FROM json_each(s.settings, '$.planned')), '')"
+        "   (value ->> '$.per'), char(10)) FROM json_each(s.settings, '$.planned')), ''),"
+        " coalesce(s.settings ->> '$.title', '')"
         " FROM session s JOIN participant p ON p.id = s.participant_id JOIN protocol o ON o.id = s.protocol_id"
         " ORDER BY s.id";
     return read_rows(reader, sql, session_row, &(struct call){.user = user, .session = each});

@@ -296,10 +296,39 @@ static void bad_people(void **state)
                     stat_exchange_test(&bad[i], how).arrangements == 0);
 }
 
+// People of one answer to all conditions say nothing of their difference: 100,000 of them change no number.
+static void cochran_of_many_people(void **state)
+{
+    (void)state;
+    enum { CONDITIONS = 3, MIXED = 8 };
+    static unsigned char answers[STAT_COCHRAN_PEOPLE * CONDITIONS];
+    static const unsigned char mixed[MIXED * CONDITIONS] = {1, 0, 0, 1, 1, 0, 1, 0, 0, 1, 0, 1,
+                                                            0, 1, 0, 1, 0, 0, 1, 1, 0, 1, 0, 0};
+    for (size_t i = 0; i < STAT_COCHRAN_PEOPLE; i++)
+        memset(answers + i * CONDITIONS, i % 3 == 0, CONDITIONS);
+    for (size_t i = 0; i < MIXED; i++)
+        memcpy(answers + (i * 12000 + 7) * CONDITIONS, mixed + i * CONDITIONS, CONDITIONS);
+    for (int64_t most = -1; most <= 0; most++) {
+        struct stat_permuting how = {most, 200, 7};
+        struct stat_cochran few = stat_cochran_q(mixed, MIXED, CONDITIONS, how),
+                            many = stat_cochran_q(answers, STAT_COCHRAN_PEOPLE, CONDITIONS, how);
+        assert_true(fabs(few.statistic - many.statistic) <= 1e-9 * few.statistic);
+        assert_int_equal(few.permutation.exact, most == 0);
+        assert_int_equal(few.permutation.exact, many.permutation.exact);
+        if (most == 0) {
+            assert_true(few.permutation.p_value == many.permutation.p_value);
+            assert_int_equal(many.permutation.arrangements, 6561); // three ways each
+        } else {
+            assert_true(fabs(few.permutation.p_value - many.permutation.p_value) < 0.15);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(agrees_with_r),
+        cmocka_unit_test(cochran_of_many_people),
         cmocka_unit_test(fisher_agrees_with_whole_numbers),
         cmocka_unit_test(fisher_twice),
         cmocka_unit_test(mcnemar_is_cochran),

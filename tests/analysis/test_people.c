@@ -3,6 +3,7 @@
 #include "analysis/stats/mixed_logit.h"
 #include "analysis/stats/multiple.h"
 #include "analysis/stats/people.h"
+#include "analysis/stats/people_equivalence.h"
 #include "analysis/stats/signflip.h"
 #include "reference.h"
 
@@ -289,9 +290,45 @@ static void bad_input(void **state)
     assert_true(isnan(stat_signflip(NULL, 0, STAT_TWO_SIDED).p_value));
 }
 
+static void equivalence_agrees_with_r(void **state)
+{
+    (void)state;
+    FILE *file = reference_open("people_equivalence.csv");
+    char line[2048];
+    size_t rows = 0;
+    assert_non_null(fgets(line, sizeof line, file));
+    for (; fgets(line, sizeof line, file); rows++) {
+        struct stat_person people[MOST];
+        double k[MOST], n[MOST], value[7];
+        line[strcspn(line, "\n")] = '\0';
+        char *rest = line;
+        size_t count = reference_numbers(reference_field(&rest, ','), k, MOST);
+        assert_int_equal(reference_numbers(reference_field(&rest, ','), n, MOST), count);
+        for (size_t i = 0; i < count; i++)
+            people[i] = (struct stat_person){(int64_t)k[i], (int64_t)n[i]};
+        for (int i = 0; i < 7; i++)
+            value[i] = reference_number(reference_field(&rest, ','));
+        struct stat_equivalence e = stat_people_equivalence(people, count, value[0], value[1], value[2]);
+        const double got[] = {e.p_low, e.p_high, e.ci.low, e.ci.high};
+        for (int i = 0; i < 4; i++)
+            if (!(fabs(got[i] - value[3 + i]) <= 1e-10 * fmax(1e-3, fabs(value[3 + i]))))
+                fail_msg("row %zu, value %d: %.17g, R %.17g", rows, i, got[i], value[3 + i]);
+        bool inside = e.ci.low > value[0] - value[1] && e.ci.high < value[0] + value[1];
+        assert_true(inside == (e.p_value <= value[2]));
+    }
+    fclose(file);
+    assert_int_equal(rows, 24);
+    const struct stat_person same[] = {{5, 10}, {5, 10}, {5, 10}};
+    assert_true(isnan(stat_people_equivalence(same, 3, 0.5, 0.1, 0.05).p_value)); // no spread, no t
+    assert_true(isnan(stat_people_equivalence(same, 1, 0.5, 0.1, 0.05).p_value));
+    assert_true(isnan(stat_people_equivalence(same, 3, 0.5, 0.6, 0.05).p_value));
+    assert_true(isnan(stat_people_equivalence(same, 3, 0.5, 0.1, 0.5).p_value));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(equivalence_agrees_with_r),
         cmocka_unit_test(tests_agree_with_r),
         cmocka_unit_test(model_agrees_with_r),
         cmocka_unit_test(states_are_told_apart),

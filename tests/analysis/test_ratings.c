@@ -114,6 +114,32 @@ static char *json_of(const char *db)
     return r.out;
 }
 
+// The command of its own says what `ratings` says of the same factors, whose numbers are R's.
+static void anova_is_a_command(void **state)
+{
+    (void)state;
+    study_file_make("f.db", &(struct study_desc){.bare = true});
+    study_file_sql("f.db", rates);
+    char *whole = json_of("f.db");
+    struct program_result json = FOVSTATS("anova", "f.db", "--json"), text = FOVSTATS("anova", "f.db"),
+                          help = FOVSTATS("anova", "--help"), typo = FOVSTATS("anova", "f.db", "--pratt");
+    assert_int_equal(json.code, 0);
+    const char *part = strstr(json.out, "\"factorial\":"), *of = strstr(whole, "\"factorial\":");
+    assert_true(part && of);
+    size_t length = strlen(part) - 2; // without the object's end and the newline
+    assert_true(length > 500 && strncmp(part, of, length) == 0);
+    assert_true(text.code == 0 && strstr(text.out, "region x epsilon") && !strstr(text.out, "second-first"));
+    assert_true(help.code == 0 && strstr(help.out, "usage: fovstats anova"));
+    assert_true(typo.code == 2 && strstr(typo.err, "--pratt"));
+    study_file_make("n.db", &(struct study_desc){.bare = true});
+    struct program_result none = FOVSTATS("anova", "n.db");
+    assert_true(none.code == 1 && strstr(none.err, "no ratings over factors"));
+    struct program_result *all[] = {&json, &text, &help, &typo, &none};
+    for (size_t i = 0; i < 5; i++)
+        program_free(all[i]);
+    free(whole);
+}
+
 static void factors_agree_with_r(void **state)
 {
     (void)state;
@@ -319,10 +345,13 @@ static void not_finite_is_said(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(factors_agree_with_r),      cmocka_unit_test(options_agree_with_r),
-        cmocka_unit_test(before_and_after_by_ranks), cmocka_unit_test(the_report_shows_them),
-        cmocka_unit_test(other_rules_change_them),   cmocka_unit_test(what_cannot_be_analysed_is_said),
-        cmocka_unit_test(not_finite_is_said)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(anova_is_a_command),
+                                       cmocka_unit_test(factors_agree_with_r),
+                                       cmocka_unit_test(options_agree_with_r),
+                                       cmocka_unit_test(before_and_after_by_ranks),
+                                       cmocka_unit_test(the_report_shows_them),
+                                       cmocka_unit_test(other_rules_change_them),
+                                       cmocka_unit_test(what_cannot_be_analysed_is_said),
+                                       cmocka_unit_test(not_finite_is_said)};
     return cmocka_run_group_tests(tests, enter_folder, leave_folder);
 }

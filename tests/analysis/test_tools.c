@@ -559,6 +559,42 @@ static void files_add_up(void **state)
     program_free(&r);
 }
 
+// Cells of one level that differ in a parameter that is no factor are told apart by their options.
+static void labels_tell_cells_apart(void **state)
+{
+    (void)state;
+    study_file_make("h.db", &(struct study_desc){0});
+    study_file_sql("h.db",
+                   "INSERT INTO condition VALUES(4, 'time_warped', '{\"epsilon\":0.2,\"fovea_deg\":20}');"
+                   "UPDATE trial SET option_a = 4 WHERE option_a = 2 AND kind = 'toggle'");
+    struct program_result r = FOVSTATS("choices", "h.db"), page = FOVSTATS("report", "h.db", "-o", "h.html");
+    assert_int_equal(r.code, 0);
+    assert_int_equal(page.code, 0);
+    assert_non_null(strstr(r.out, "fovea_deg 10 or regular"));
+    assert_non_null(strstr(r.out, "fovea_deg 20 or regular"));
+    program_free(&r);
+    program_free(&page);
+}
+
+static void equivalence_needs_a_margin(void **state)
+{
+    (void)state;
+    study_file_make("q.db", &(struct study_desc){.several = true});
+    struct program_result none = FOVSTATS("choices", "q.db"),
+                          some = FOVSTATS("choices", "q.db", "--margin", "0.2"),
+                          wide = FOVSTATS("choices", "q.db", "--margin", "0.6"),
+                          low = FOVSTATS("choices", "q.db", "--margin", "0.1", "--conf", "0.4");
+    assert_null(strstr(none.out, "Equivalence"));
+    assert_non_null(strstr(some.out, "within 0.3 to 0.7"));
+    assert_non_null(strstr(some.out, "equality within the margin is shown"));
+    assert_non_null(strstr(some.out, "exact binomial"));
+    assert_true(wide.code == 2 && strstr(wide.err, "--margin is 0.6"));
+    assert_true(low.code == 2 && strstr(low.err, "more than 0.5"));
+    struct program_result *all[] = {&none, &some, &wide, &low};
+    for (size_t i = 0; i < 4; i++)
+        program_free(all[i]);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -577,6 +613,8 @@ int main(void)
         cmocka_unit_test(frames_agree_with_r),
         cmocka_unit_test(repeated_people_are_said),
         cmocka_unit_test(right_answers_are_no_preferences),
+        cmocka_unit_test(labels_tell_cells_apart),
+        cmocka_unit_test(equivalence_needs_a_margin),
         cmocka_unit_test(files_add_up),
     };
     return cmocka_run_group_tests(tests, enter_folder, leave_folder);

@@ -175,6 +175,11 @@ static void test_analysis_and_rules(void **state)
         {PLAN("{method: mean, of: choice, per: factor}"), "p:15:30: no block has factors to split by"},
         {PLAN("{method: mean, of: choice, per: order}"),
          "p:15:30: no rate block has its complement, so there are no orders to split by"},
+        {PLAN("{method: binomial, of: choice, per: cell}\n- {method: binomial, of: choice}\n"
+              "- {method: binomial, of: choice, per: cell}"),
+         "p:17:3: this analysis is planned twice, as number 1 and 3; remove one"},
+        {PLAN("{method: anova, of: choice, per: cell}"),
+         "p:15:31: an analysis of variance compares levels of factors, not each cell; write 'per: factor'"},
         {"exclude:\n- {rule: failed_catch}\n" SETTINGS BLOCK,
          "p:15:4: no block has catch trials that could be failed"},
     };

@@ -1,0 +1,86 @@
+// The analysis of variance of ratings over crossed factors alone; fovstats ratings prints it beside the rest.
+#include "analysis/tools/arguments.h"
+#include "analysis/tools/ratings_parts.h"
+#include "analysis/tools/study_arguments.h"
+
+#include <stdio.h>
+
+static const char help[] =
+    "usage: fovstats anova DB... [--conf C] [--simulated] [--protocol N] [--json]\n"
+    "\n"
+    "Ratings over crossed factors: analysis of variance within participants with all interactions, per "
+    "question\n"
+    "and block. Greenhouse-Geisser's and Huynh-Feldt's corrections, partial and generalised eta squared, "
+    "means\n"
+    "of levels, and paired tests of levels after Holm where a factor's corrected p is small. People who lack "
+    "a\n"
+    "cell are named and left out, nothing is filled; factors between people are said and not analysed.\n"
+    "  --conf C     confidence of the intervals (0.95)\n"
+    "  --simulated  analyse simulated sessions, which are left out otherwise\n"
+    "  --protocol N analyse the sessions of this protocol; else of the one with most sessions\n"
+    "  --json       one object with the analyses in an array\n";
+
+static void print_json(const struct sample *sample, const struct ratings *r)
+{
+    struct json json = {stdout, false};
+    json_open(&json, NULL, '{');
+    study_title_json(&json, sample);
+    json_number(&json, "conf", r->conf);
+    json_open(&json, "factorial", '[');
+    for (size_t i = 0; i < r->factorials.count; i++)
+        ratings_factorial_json(&json, sample, &r->factorials.items[i]);
+    json_close(&json, ']');
+    json_close(&json, '}');
+    putchar('\n');
+}
+
+static bool print_text(const struct sample *sample, const struct ratings *r)
+{
+    bool ok = true;
+    study_title(sample, "Analysis of variance");
+    for (size_t i = 0; i < r->factorials.count; i++)
+        ok = ratings_print_factorial(sample, &r->factorials.items[i], r->conf) && ok;
+    study_notes(sample);
+    return ok;
+}
+
+static int finish(const struct command *command, const struct sample *sample, const struct ratings *r)
+{
+    size_t analysed = 0;
+    for (size_t i = 0; i < r->factorials.count; i++)
+        analysed += r->factorials.items[i].refusal[0] == '\0';
+    const char *path = store_reader_path(sample->files[0]);
+    if (r->factorials.count == 0)
+        return command_fail(command, EXIT_FAILED,
+                            "%s: no ratings over factors were recorded that count; see fovstats ratings", path);
+    if (analysed == 0)
+        return command_fail(command, EXIT_FAILED,
+                            "%s: no analysis of variance is possible; what was recorded says why", path);
+    return command_finish(command);
+}
+
+static int run(const struct command *command, int argc, char **argv)
+{
+    struct study_arguments arguments;
+    struct sample sample;
+    int code = study_arguments_load(command, argc, argv, false, &arguments, &sample);
+    if (code >= 0)
+        return code;
+    char error[SAMPLE_ERROR_SIZE];
+    struct ratings r;
+    if (!ratings_load(&r, &sample, arguments.conf, false, error, sizeof error)) {
+        code = command_fail(command, EXIT_FAILED, "%s", error);
+    } else {
+        bool ok = true;
+        if (arguments.json)
+            print_json(&sample, &r);
+        else if (r.factorials.count)
+            ok = print_text(&sample, &r);
+        code = ok ? finish(command, &sample, &r) : command_fail(command, EXIT_FAILED, "not enough memory");
+    }
+    ratings_free(&r);
+    sample_free(&sample);
+    return code;
+}
+
+const struct command command_anova = {"anova", "analysis of variance of ratings over factors", help, run};
