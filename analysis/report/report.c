@@ -27,6 +27,12 @@ void report_figure(const struct report *r, const struct figure_pair *figure, con
                 caption);
 }
 
+void report_heading(const struct report *r, const char *heading)
+{
+    fprintf(r->out, "<h2>%s</h2>\n<p class=\"source\">Data %.16s, fovstats " FOVSTUDY_VERSION "</p>\n", heading,
+            r->sample->data_hash);
+}
+
 static const char *title_of(const struct report *r)
 {
     return r->sample->sessions[0].protocol_name;
@@ -48,7 +54,10 @@ static void write_head(const struct report *r)
         fputs("<div class=\"brand\" role=\"note\">SIMULATED DATA: no person took part</div>\n", out);
     fputs("<main>\n<header>\n<h1>", out);
     html_printf(out, "%s%s: study report", simulated ? "SIMULATED DATA \u2013 " : "", title_of(r));
-    fputs("</h1>\n</header>\n", out);
+    fputs("</h1>\n", out);
+    fprintf(out,
+            "<p class=\"source\">Data SHA-256 <code>%s</code>, fovstats " FOVSTUDY_VERSION "</p>\n</header>\n",
+            r->sample->data_hash);
 }
 
 static bool write_page(const struct report *r, char *error, size_t error_size)
@@ -67,7 +76,11 @@ static bool write_page(const struct report *r, char *error, size_t error_size)
     if (!report_quality(r, error, error_size))
         return false;
     report_definitions(r);
-    fputs("<footer>Made by fovstats " FOVSTUDY_VERSION ".</footer>\n</main>\n</body>\n</html>\n", r->out);
+    fprintf(r->out, "<footer>Made by fovstats " FOVSTUDY_VERSION " from data with SHA-256 <code>%s</code>",
+            r->sample->data_hash);
+    fputs(", which covers sessions, trials, answers and exclusions, not the logs of frames and "
+          "gaze.</footer>\n</main>\n</body>\n</html>\n",
+          r->out);
     return true;
 }
 

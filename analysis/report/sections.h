@@ -74,6 +74,8 @@ void report_definitions(const struct report *r);
 
 // Both widths of a figure and its caption, which is HTML.
 void report_figure(const struct report *r, const struct figure_pair *figure, const char *caption);
+// The heading of a section, which is HTML, with where its numbers come from.
+void report_heading(const struct report *r, const char *heading);
 const char *report_label(const struct report *r, size_t condition);
 bool report_outside(
     const struct choice_cell *cell); // p <= 1 - conf; of a binomial test, outside the null region
