@@ -288,7 +288,47 @@ static void free_figures(struct report *r)
     }
 }
 
+static bool write_pair(struct figure_files *files, const struct figure_pair *pair, const char *name,
+                       size_t number, char *error, size_t error_size)
+{
+    char wide[64], narrow[80];
+    if (number)
+        snprintf(wide, sizeof wide, "%s_%zu", name, number);
+    else
+        snprintf(wide, sizeof wide, "%s", name);
+    snprintf(narrow, sizeof narrow, "%s_narrow", wide);
+    return figure_files_write(files, wide, pair->wide, error, error_size) &&
+           figure_files_write(files, narrow, pair->narrow, error, error_size);
+}
+
+// Numbers are those of the report's order, from 1.
+static bool write_figures(const struct report *r, struct figure_files *files, char *error, size_t error_size)
+{
+    const struct {
+        const char *name;
+        const struct figure_pair *pairs;
+        size_t count; // 0: one, without a number
+    } all[] = {{"choices", &r->choices_figure, 0},
+               {"ratings_before_after", r->ratings_figures, REPORT_QUESTIONS},
+               {"ratings_means", r->factorial_figures, REPORT_QUESTIONS},
+               {"ratings_answers", r->likert_figures, REPORT_QUESTIONS},
+               {"thresholds", r->threshold_figures, REPORT_STAIRCASES},
+               {"adjusted", &r->adjusted_figure, 0},
+               {"frame_times", &r->frames_figure, 0}};
+    bool ok = figure_files_begin(files, error, error_size);
+    for (size_t i = 0; ok && i < sizeof all / sizeof all[0]; i++)
+        for (size_t j = 0; ok && j < (all[i].count ? all[i].count : 1); j++)
+            ok = write_pair(files, &all[i].pairs[j], all[i].name, all[i].count ? j + 1 : 0, error, error_size);
+    return ok;
+}
+
 bool report_write(struct sample *sample, double conf, const char *path, char *error, size_t error_size)
+{
+    return report_write_with_figures(sample, conf, path, NULL, error, error_size);
+}
+
+bool report_write_with_figures(struct sample *sample, double conf, const char *path, struct figure_files *files,
+                               char *error, size_t error_size)
 {
     struct report r = {.sample = sample, .conf = conf};
     size_t size = strlen(path) + 32;
@@ -301,7 +341,8 @@ bool report_write(struct sample *sample, double conf, const char *path, char *er
     ok = ok && load(&r, error, error_size) && draw_choices(&r, error, error_size) &&
          draw_ratings(&r, error, error_size) && draw_factorials(&r, error, error_size) &&
          draw_frames(&r, error, error_size) && draw_thresholds(&r, error, error_size) &&
-         draw_adjusted(&r, error, error_size) && write_to(&r, path, temporary, error, error_size);
+         draw_adjusted(&r, error, error_size) && write_to(&r, path, temporary, error, error_size) &&
+         (!files || write_figures(&r, files, error, error_size));
     free_figures(&r);
     choices_free(&r.choices);
     ratings_free(&r.ratings);
