@@ -73,6 +73,7 @@ static bool write_page(const struct report *r, char *error, size_t error_size)
     report_thresholds(r);
     report_checks(r);
     report_frames(r);
+    report_bench(r);
     if (!report_quality(r, error, error_size))
         return false;
     report_definitions(r);
@@ -274,6 +275,10 @@ static void free_figures(struct report *r)
     free(r->frames_figure.narrow);
     free(r->adjusted_figure.wide);
     free(r->adjusted_figure.narrow);
+    for (int i = 0; i < BENCH_SCENES; i++) {
+        free(r->bench_figures[i].wide);
+        free(r->bench_figures[i].narrow);
+    }
     for (int i = 0; i < REPORT_STAIRCASES; i++) {
         free(r->threshold_figures[i].wide);
         free(r->threshold_figures[i].narrow);
@@ -314,6 +319,7 @@ static bool write_figures(const struct report *r, struct figure_files *files, ch
                {"ratings_answers", r->likert_figures, REPORT_QUESTIONS},
                {"thresholds", r->threshold_figures, REPORT_STAIRCASES},
                {"adjusted", &r->adjusted_figure, 0},
+               {"speed_error", r->bench_figures, BENCH_SCENES},
                {"frame_times", &r->frames_figure, 0}};
     bool ok = figure_files_begin(files, error, error_size);
     for (size_t i = 0; ok && i < sizeof all / sizeof all[0]; i++)
@@ -324,11 +330,11 @@ static bool write_figures(const struct report *r, struct figure_files *files, ch
 
 bool report_write(struct sample *sample, double conf, const char *path, char *error, size_t error_size)
 {
-    return report_write_with_figures(sample, conf, path, NULL, error, error_size);
+    return report_write_with_figures(sample, conf, path, NULL, NULL, error, error_size);
 }
 
-bool report_write_with_figures(struct sample *sample, double conf, const char *path, struct figure_files *files,
-                               char *error, size_t error_size)
+bool report_write_with_figures(struct sample *sample, double conf, const char *path, const char *bench,
+                               struct figure_files *files, char *error, size_t error_size)
 {
     struct report r = {.sample = sample, .conf = conf};
     size_t size = strlen(path) + 32;
@@ -338,7 +344,8 @@ bool report_write_with_figures(struct sample *sample, double conf, const char *p
         snprintf(temporary, size, "%s.part-%ld", path, (long)getpid());
     else
         snprintf(error, error_size, "not enough memory");
-    ok = ok && load(&r, error, error_size) && draw_choices(&r, error, error_size) &&
+    ok = ok && (!bench || bench_load(&r.bench, bench, error, error_size)) && load(&r, error, error_size) &&
+         report_draw_bench(&r, error, error_size) && draw_choices(&r, error, error_size) &&
          draw_ratings(&r, error, error_size) && draw_factorials(&r, error, error_size) &&
          draw_frames(&r, error, error_size) && draw_thresholds(&r, error, error_size) &&
          draw_adjusted(&r, error, error_size) && write_to(&r, path, temporary, error, error_size) &&
@@ -351,6 +358,7 @@ bool report_write_with_figures(struct sample *sample, double conf, const char *p
     audit_free(&r.audit);
     thresholds_free(&r.thresholds);
     adjusted_free(&r.adjusted);
+    bench_free(&r.bench);
     jod_free(&r.jod);
     free_tests(&r.all);
     free_tests(&r.stricter);

@@ -4,6 +4,7 @@
 
 #include "analysis/report/adjusted.h"
 #include "analysis/report/audit.h"
+#include "analysis/report/bench.h"
 #include "analysis/report/checks.h"
 #include "analysis/report/choices.h"
 #include "analysis/report/frames.h"
@@ -43,6 +44,8 @@ struct report {
     struct report_tests all, stricter; // without any exclusion; with those of the set 'stricter' too
     struct figure_pair choices_figure, frames_figure, ratings_figures[REPORT_QUESTIONS],
         factorial_figures[REPORT_QUESTIONS], likert_figures[REPORT_QUESTIONS];
+    struct bench bench; // without rows where no file was given
+    struct figure_pair bench_figures[BENCH_SCENES];
     struct figure_pair threshold_figures[REPORT_STAIRCASES], adjusted_figure;
 };
 
@@ -69,6 +72,8 @@ void report_frames(const struct report *r);
 void report_checks(const struct report *r);  // null and catch trials
 void report_what_if(const struct report *r); // the same tests under other exclusions
 bool report_quality(const struct report *r, char *error, size_t error_size);
+void report_bench(const struct report *r);
+bool report_draw_bench(struct report *r, char *error, size_t error_size);
 void report_audit(const struct report *r); // every frame accounted for
 void report_definitions(const struct report *r);
 
