@@ -4,6 +4,7 @@
 #define ANALYSIS_REPORT_FIGURES_H
 
 #include "analysis/report/adjusted.h"
+#include "analysis/report/bench.h"
 #include "analysis/report/choices.h"
 #include "analysis/report/figure.h"
 #include "analysis/report/frames.h"
@@ -54,6 +55,10 @@ bool figure_thresholds(const struct threshold_cell *cell, const struct figure_de
 // Each person's adjusted value and the mean with its interval, cell by cell of one parameter.
 bool figure_adjusted(const struct adjusted_cell *const *cells, size_t count, const struct figure_desc *desc,
                      char **out_svg, char *error, size_t error_size);
+
+// Speed against error of a scene's rows, the Pareto front in blue.
+bool figure_bench(const struct bench *bench, const char *scene, const struct figure_desc *desc, char **out_svg,
+                  char *error, size_t error_size);
 
 // How many groups figure_frames() would draw: 0 where there is nothing to draw.
 size_t figure_frames_rows(const struct frames *frames);

@@ -27,6 +27,12 @@ void report_figure(const struct report *r, const struct figure_pair *figure, con
                 caption);
 }
 
+void report_heading(const struct report *r, const char *heading)
+{
+    fprintf(r->out, "<h2>%s</h2>\n<p class=\"source\">Data %.16s, fovstats " FOVSTUDY_VERSION "</p>\n", heading,
+            r->sample->data_hash);
+}
+
 static const char *title_of(const struct report *r)
 {
     return r->sample->sessions[0].protocol_name;
@@ -54,7 +60,9 @@ static void write_head(const struct report *r)
         html_printf(out, "%s", r->sample->sessions[0].title);
         fputs("</p>\n", out);
     }
-    fputs("</header>\n", out);
+    fprintf(out,
+            "<p class=\"source\">Data SHA-256 <code>%s</code>, fovstats " FOVSTUDY_VERSION "</p>\n</header>\n",
+            r->sample->data_hash);
 }
 
 static bool write_page(const struct report *r, char *error, size_t error_size)
@@ -70,10 +78,15 @@ static bool write_page(const struct report *r, char *error, size_t error_size)
     report_thresholds(r);
     report_checks(r);
     report_frames(r);
+    report_bench(r);
     if (!report_quality(r, error, error_size))
         return false;
     report_definitions(r);
-    fputs("<footer>Made by fovstats " FOVSTUDY_VERSION ".</footer>\n</main>\n</body>\n</html>\n", r->out);
+    fprintf(r->out, "<footer>Made by fovstats " FOVSTUDY_VERSION " from data with SHA-256 <code>%s</code>",
+            r->sample->data_hash);
+    fputs(", which covers sessions, trials, answers and exclusions, not the logs of frames and "
+          "gaze.</footer>\n</main>\n</body>\n</html>\n",
+          r->out);
     return true;
 }
 
@@ -272,6 +285,10 @@ static void free_figures(struct report *r)
     free(r->frames_figure.narrow);
     free(r->adjusted_figure.wide);
     free(r->adjusted_figure.narrow);
+    for (int i = 0; i < BENCH_SCENES; i++) {
+        free(r->bench_figures[i].wide);
+        free(r->bench_figures[i].narrow);
+    }
     for (int i = 0; i < REPORT_STAIRCASES; i++) {
         free(r->threshold_figures[i].wide);
         free(r->threshold_figures[i].narrow);
@@ -286,7 +303,48 @@ static void free_figures(struct report *r)
     }
 }
 
+static bool write_pair(struct figure_files *files, const struct figure_pair *pair, const char *name,
+                       size_t number, char *error, size_t error_size)
+{
+    char wide[64], narrow[80];
+    if (number)
+        snprintf(wide, sizeof wide, "%s_%zu", name, number);
+    else
+        snprintf(wide, sizeof wide, "%s", name);
+    snprintf(narrow, sizeof narrow, "%s_narrow", wide);
+    return figure_files_write(files, wide, pair->wide, error, error_size) &&
+           figure_files_write(files, narrow, pair->narrow, error, error_size);
+}
+
+// Numbers are those of the report's order, from 1.
+static bool write_figures(const struct report *r, struct figure_files *files, char *error, size_t error_size)
+{
+    const struct {
+        const char *name;
+        const struct figure_pair *pairs;
+        size_t count; // 0: one, without a number
+    } all[] = {{"choices", &r->choices_figure, 0},
+               {"ratings_before_after", r->ratings_figures, REPORT_QUESTIONS},
+               {"ratings_means", r->factorial_figures, REPORT_QUESTIONS},
+               {"ratings_answers", r->likert_figures, REPORT_QUESTIONS},
+               {"thresholds", r->threshold_figures, REPORT_STAIRCASES},
+               {"adjusted", &r->adjusted_figure, 0},
+               {"speed_error", r->bench_figures, BENCH_SCENES},
+               {"frame_times", &r->frames_figure, 0}};
+    bool ok = figure_files_begin(files, error, error_size);
+    for (size_t i = 0; ok && i < sizeof all / sizeof all[0]; i++)
+        for (size_t j = 0; ok && j < (all[i].count ? all[i].count : 1); j++)
+            ok = write_pair(files, &all[i].pairs[j], all[i].name, all[i].count ? j + 1 : 0, error, error_size);
+    return ok;
+}
+
 bool report_write(struct sample *sample, double conf, const char *path, char *error, size_t error_size)
+{
+    return report_write_with_figures(sample, conf, path, NULL, NULL, error, error_size);
+}
+
+bool report_write_with_figures(struct sample *sample, double conf, const char *path, const char *bench,
+                               struct figure_files *files, char *error, size_t error_size)
 {
     struct report r = {.sample = sample, .conf = conf};
     size_t size = strlen(path) + 32;
@@ -296,10 +354,12 @@ bool report_write(struct sample *sample, double conf, const char *path, char *er
         snprintf(temporary, size, "%s.part-%ld", path, (long)getpid());
     else
         snprintf(error, error_size, "not enough memory");
-    ok = ok && load(&r, error, error_size) && draw_choices(&r, error, error_size) &&
+    ok = ok && (!bench || bench_load(&r.bench, bench, error, error_size)) && load(&r, error, error_size) &&
+         report_draw_bench(&r, error, error_size) && draw_choices(&r, error, error_size) &&
          draw_ratings(&r, error, error_size) && draw_factorials(&r, error, error_size) &&
          draw_frames(&r, error, error_size) && draw_thresholds(&r, error, error_size) &&
-         draw_adjusted(&r, error, error_size) && write_to(&r, path, temporary, error, error_size);
+         draw_adjusted(&r, error, error_size) && write_to(&r, path, temporary, error, error_size) &&
+         (!files || write_figures(&r, files, error, error_size));
     free_figures(&r);
     choice_factors_free(&r.factors);
     choices_free(&r.choices);
@@ -309,6 +369,7 @@ bool report_write(struct sample *sample, double conf, const char *path, char *er
     audit_free(&r.audit);
     thresholds_free(&r.thresholds);
     adjusted_free(&r.adjusted);
+    bench_free(&r.bench);
     jod_free(&r.jod);
     free_tests(&r.all);
     free_tests(&r.stricter);

@@ -54,7 +54,8 @@ void report_checks(const struct report *r)
     const struct checks *c = &r->checks;
     if (c->person_count == 0)
         return;
-    fputs("<h2>Null and catch trials</h2>\n<p>", r->out);
+    report_heading(r, "Null and catch trials");
+    fputs("<p>", r->out);
     if (c->nulls) {
         html_printf(
             r->out,

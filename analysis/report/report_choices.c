@@ -220,7 +220,7 @@ static void options_sentence(const struct report *r)
 
 void report_choices(const struct report *r)
 {
-    fputs("<h2>Choices</h2>\n", r->out);
+    report_heading(r, "Choices");
     if (r->choices.cell_count == 0) {
         fputs("<p class=\"note\">No choice was recorded that counts.</p>\n", r->out);
         return;
@@ -275,7 +275,8 @@ void report_toggles(const struct report *r)
     const struct choices *c = &r->choices;
     if (c->cell_count == 0)
         return;
-    fputs("<h2>Toggles before answering</h2>\n<p>", r->out);
+    report_heading(r, "Toggles before answering");
+    fputs("<p>", r->out);
     if (c->toggles.n > 1)
         html_printf(r->out, "%.2f switches before a decision (SD %.2f) over %zu answers. ", c->toggles.mean,
                     c->toggles.sd, c->toggles.n);

@@ -40,7 +40,7 @@ void report_frames(const struct report *r)
 {
     const struct frames *f = &r->frames;
     FILE *out = r->out;
-    fputs("<h2>Frame times</h2>\n", out);
+    report_heading(r, "Frame times");
     if (f->group_count == 0) {
         fputs("<p class=\"note\">No frame was recorded.</p>\n", out);
         return;

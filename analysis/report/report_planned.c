@@ -115,7 +115,7 @@ static size_t write_session(const struct report *r, size_t session, size_t count
 void report_planned(const struct report *r)
 {
     size_t count = 0;
-    fputs("<h2>Planned analyses</h2>\n", r->out);
+    report_heading(r, "Planned analyses");
     for (size_t i = 0; i < r->sample->session_count; i++)
         if (!r->sample->sessions[i].excluded)
             count = write_session(r, i, count);

@@ -197,7 +197,7 @@ static void exclusions_table(const struct report *r)
 
 bool report_quality(const struct report *r, char *error, size_t error_size)
 {
-    fputs("<h2>Quality and exclusions</h2>\n", r->out);
+    report_heading(r, "Quality and exclusions");
     left_out(r);
     exclusions_table(r);
     report_what_if(r);
@@ -237,7 +237,8 @@ void report_definitions(const struct report *r)
         {"GPU and CPU time, interval",
          "Time spent on a frame by each, and between the starts of successive frames."},
     };
-    fputs("<h2>Definitions</h2>\n<dl>\n", r->out);
+    report_heading(r, "Definitions");
+    fputs("<dl>\n", r->out);
     for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
         fprintf(r->out, "<dt>%s</dt><dd>%s</dd>\n", words[i][0], words[i][1]);
     fputs("</dl>\n", r->out);

@@ -137,7 +137,7 @@ static void first_sentence(const struct report *r, const struct rating_question 
 
 void report_ratings(const struct report *r)
 {
-    fputs("<h2>Ratings</h2>\n", r->out);
+    report_heading(r, "Ratings");
     if (!ratings_any(&r->ratings))
         fputs("<p class=\"note\">No rating of an option was recorded that counts.</p>\n", r->out);
     for (size_t i = 0; i < r->ratings.question_count; i++) {

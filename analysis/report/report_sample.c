@@ -221,7 +221,8 @@ void report_sample(const struct report *r)
 {
     const struct sample *s = r->sample;
     size_t used = sessions_used(s);
-    fputs("<h2>Study and sample</h2>\n<div class=\"table\"><table class=\"facts\"><tbody>\n", r->out);
+    report_heading(r, "Study and sample");
+    fputs("<div class=\"table\"><table class=\"facts\"><tbody>\n", r->out);
     fact_row(r, "Protocol", fact_protocol);
     fprintf(r->out, "<tr><th scope=\"row\">%s</th><td>%zu (%zu %s)</td></tr>\n",
             s->simulated ? "Simulated observers" : "Participants", people_used(s), used,
@@ -263,7 +264,8 @@ void report_sample(const struct report *r)
 
 void report_methods(const struct report *r)
 {
-    fputs("<h2>Methods</h2>\n<p>", r->out);
+    report_heading(r, "Methods");
+    fputs("<p>", r->out);
     if (r->choices.cell_count)
         report_choices_methods(r);
     if (r->ratings.question_count)

@@ -186,7 +186,7 @@ static void report_staircases(const struct report *r)
     const struct thresholds *t = &r->thresholds;
     if (t->cell_count == 0)
         return;
-    fputs("<h2>Thresholds</h2>\n", r->out);
+    report_heading(r, "Thresholds");
     staircase_words(r);
     for (size_t i = 0; i < t->cell_count; i++) {
         const struct threshold_cell *cell = &t->cells[i];
@@ -226,7 +226,8 @@ static void report_adjusted(const struct report *r)
     FILE *out = r->out;
     if (a->cell_count == 0)
         return;
-    fputs("<h2>Adjusted values</h2>\n<p>What people set parameters to. A person\u2019s repeats are averaged "
+    report_heading(r, "Adjusted values");
+    fputs("<p>What people set parameters to. A person\u2019s repeats are averaged "
           "first; "
           "means and their t intervals are over people.</p>\n",
           out);
@@ -290,7 +291,8 @@ static void report_jod(const struct report *r)
     FILE *out = r->out;
     if (r->jod.block_count == 0)
         return;
-    fputs("<h2>Preferences on one scale</h2>\n<p>Just-objectionable differences (JOD) from the reference, by "
+    report_heading(r, "Preferences on one scale");
+    fputs("<p>Just-objectionable differences (JOD) from the reference, by "
           "Thurstone\u2019s case V and maximum likelihood: one JOD apart is 75&nbsp;% preference, negative is "
           "worse. "
           "Scenes are put together. Intervals by a bootstrap over people. What was preferred always or never "

@@ -247,6 +247,21 @@ static bool sessions_left(const struct sample *sample, char *error, size_t error
     return false;
 }
 
+static bool hash_sessions(struct sample *sample, char *error, size_t error_size)
+{
+    char(*digests)[STORE_DIGEST_HEX] = calloc(sample->session_count, sizeof *digests);
+    bool ok = digests != NULL;
+    for (size_t i = 0; ok && i < sample->session_count; i++) {
+        struct store_reader *reader = sample->files[sample->sessions[i].file];
+        ok = store_session_digest(reader, sample->sessions[i].id, digests[i]);
+        if (!ok)
+            snprintf(error, error_size, "%s", store_reader_error(reader));
+    }
+    ok = ok && store_digests_join(digests, sample->session_count, sample->data_hash);
+    free(digests);
+    return ok;
+}
+
 bool sample_load(struct sample *out, const char *const *paths, size_t path_count, bool simulated,
                  const char *protocol, char *error, size_t error_size)
 {
@@ -254,7 +269,8 @@ bool sample_load(struct sample *out, const char *const *paths, size_t path_count
     snprintf(error, error_size, "not enough memory");
     if (open_files(out, paths, path_count, error, error_size) &&
         choose_protocol(out, protocol, error, error_size) && sample_read(out, error, error_size) &&
-        no_copies(out, error, error_size) && sessions_left(out, error, error_size)) {
+        no_copies(out, error, error_size) && sessions_left(out, error, error_size) &&
+        hash_sessions(out, error, error_size)) {
         error[0] = '\0';
         return true;
     }

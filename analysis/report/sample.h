@@ -9,6 +9,7 @@
 #ifndef ANALYSIS_REPORT_SAMPLE_H
 #define ANALYSIS_REPORT_SAMPLE_H
 
+#include "studies/store/digest.h"
 #include "studies/store/read.h"
 
 #include <stdbool.h>
@@ -90,6 +91,9 @@ struct sample {
     size_t left_out_simulated;
     const char *protocol;     // the name of the one whose sessions are analysed
     size_t left_out_protocol; // sessions of others
+    // SHA-256 of what the sessions say, excluded ones too (digest.h); the same for the same sittings in other
+    // files, in whatever order.
+    char data_hash[STORE_DIGEST_HEX];
     size_t file_count;
     struct store_reader **files;
     size_t session_count, person_count, attribute_count, condition_count, condition_id_count, parameter_count,

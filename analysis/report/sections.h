@@ -4,6 +4,7 @@
 
 #include "analysis/report/adjusted.h"
 #include "analysis/report/audit.h"
+#include "analysis/report/bench.h"
 #include "analysis/report/checks.h"
 #include "analysis/report/choice_factors.h"
 #include "analysis/report/choices.h"
@@ -45,6 +46,8 @@ struct report {
     struct report_tests all, stricter; // without any exclusion; with those of the set 'stricter' too
     struct figure_pair choices_figure, frames_figure, ratings_figures[REPORT_QUESTIONS],
         factorial_figures[REPORT_QUESTIONS], likert_figures[REPORT_QUESTIONS];
+    struct bench bench; // without rows where no file was given
+    struct figure_pair bench_figures[BENCH_SCENES];
     struct figure_pair threshold_figures[REPORT_STAIRCASES], adjusted_figure;
 };
 
@@ -73,11 +76,15 @@ void report_frames(const struct report *r);
 void report_checks(const struct report *r);  // null and catch trials
 void report_what_if(const struct report *r); // the same tests under other exclusions
 bool report_quality(const struct report *r, char *error, size_t error_size);
+void report_bench(const struct report *r);
+bool report_draw_bench(struct report *r, char *error, size_t error_size);
 void report_audit(const struct report *r); // every frame accounted for
 void report_definitions(const struct report *r);
 
 // Both widths of a figure and its caption, which is HTML.
 void report_figure(const struct report *r, const struct figure_pair *figure, const char *caption);
+// The heading of a section, which is HTML, with where its numbers come from.
+void report_heading(const struct report *r, const char *heading);
 const char *report_label(const struct report *r, size_t condition);
 bool report_outside(
     const struct choice_cell *cell); // p <= 1 - conf; of a binomial test, outside the null region

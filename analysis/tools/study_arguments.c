@@ -57,17 +57,19 @@ void study_title(const struct sample *sample, const char *what)
 {
     int64_t sessions, people;
     count_used(sample, &sessions, &people);
-    printf("%s%s: %" PRId64 " %s, %" PRId64 " %s\n\n", sample->simulated ? "SIMULATED DATA. " : "", what,
-           people,
+    printf("%s%s: %" PRId64 " %s, %" PRId64 " %s\n", sample->simulated ? "SIMULATED DATA. " : "", what, people,
            sample->simulated ? (people == 1 ? "simulated observer" : "simulated observers")
                              : (people == 1 ? "participant" : "participants"),
            sessions, sessions == 1 ? "session" : "sessions");
+    printf("Data SHA-256 %s, fovstats " FOVSTUDY_VERSION "\n\n", sample->data_hash);
 }
 
 void study_title_json(struct json *json, const struct sample *sample)
 {
     int64_t sessions, people;
     count_used(sample, &sessions, &people);
+    json_text(json, "data_sha256", sample->data_hash);
+    json_text(json, "program", "fovstats " FOVSTUDY_VERSION);
     json_bool(json, "simulated", sample->simulated);
     json_integer(json, "participants", people);
     json_integer(json, "sessions", sessions);

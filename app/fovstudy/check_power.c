@@ -142,11 +142,13 @@ bool check_analyses_init(struct check_analyses *out, const struct protocol *prot
     *out = (struct check_analyses){.count = protocol->analysis_count};
     for (uint32_t i = 0; i < out->count; i++) {
         const char *method = protocol->analyses[i].method;
+        // Only choices are counts of two answers; of anything else a binomial test says nothing.
+        bool counts = strcmp(protocol->analyses[i].of, "choice") == 0;
         out->each[i].planned = &protocol->analyses[i];
-        out->each[i].test = strcmp(method, "binomial") == 0     ? CHECK_BINOMIAL
-                            : strcmp(method, "paired_t") == 0   ? CHECK_PAIRED_T
-                            : strcmp(method, "unpaired_t") == 0 ? CHECK_TWO_SAMPLE_T
-                                                                : CHECK_ESTIMATE;
+        out->each[i].test = strcmp(method, "binomial") == 0 && counts ? CHECK_BINOMIAL
+                            : strcmp(method, "paired_t") == 0         ? CHECK_PAIRED_T
+                            : strcmp(method, "unpaired_t") == 0       ? CHECK_TWO_SAMPLE_T
+                                                                      : CHECK_ESTIMATE;
     }
     return plan_each(protocol, seed, 0, people, count_plan, &tally);
 }

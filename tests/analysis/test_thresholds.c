@@ -232,6 +232,10 @@ static void text_is_as_it_was(void **state)
         fail_msg("%s is missing; it should read:\n%s", path, r.out);
     golden[fread(golden, 1, sizeof golden - 1, file)] = '\0';
     fclose(file);
+    char *hash = strstr(r.out, "SHA-256 "); // the golden file has HASH: provenance has its own test
+    assert_non_null(hash);
+    memmove(hash + 8 + 4, hash + 8 + 64, strlen(hash + 8 + 64) + 1);
+    memcpy(hash + 8, "HASH", 4);
     assert_string_equal(r.out, golden);
     program_free(&r);
 }

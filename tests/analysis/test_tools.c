@@ -79,7 +79,16 @@ static void expect_golden(const char *text, const char *name)
         fail_msg("%s is missing; it should read:\n%s", path, text);
     golden[fread(golden, 1, sizeof golden - 1, file)] = '\0';
     fclose(file);
-    assert_string_equal(text, golden);
+    // The golden files have HASH for the data's: provenance has its own test.
+    char *copy = strdup(text), *hash = copy ? strstr(copy, "SHA-256 ") : NULL;
+    assert_non_null(copy);
+    if (hash) {
+        assert_int_equal(strspn(hash + 8, "0123456789abcdef"), 64);
+        memmove(hash + 8 + 4, hash + 8 + 64, strlen(hash + 8 + 64) + 1);
+        memcpy(hash + 8, "HASH", 4);
+    }
+    assert_string_equal(copy, golden);
+    free(copy);
 }
 
 // --- binom ---
