@@ -62,6 +62,7 @@ static bool write_page(const struct report *r, char *error, size_t error_size)
     report_toggles(r);
     report_ratings(r);
     report_thresholds(r);
+    report_effects(r);
     report_checks(r);
     report_frames(r);
     if (!report_quality(r, error, error_size))
@@ -240,6 +241,7 @@ static bool load(struct report *r, char *error, size_t error_size)
     return choices_load(&r->choices, r->sample, r->conf, error, error_size) &&
            ratings_load(&r->ratings, r->sample, r->conf, false, error, error_size) &&
            checks_load(&r->checks, r->sample, r->conf, error, error_size) &&
+           effects_load(&r->effects, r->sample, r->conf, error, error_size) &&
            frames_load(&r->frames, r->sample, error, error_size) &&
            audit_load(&r->audit, r->sample, error, error_size) && load_thresholds(r, error, error_size) &&
            (r->sample->exclusion_count == 0 ||

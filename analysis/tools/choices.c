@@ -2,6 +2,7 @@
 
 #include "analysis/tools/arguments.h"
 #include "analysis/tools/binomial_json.h"
+#include "analysis/tools/choices_effects.h"
 #include "analysis/tools/choices_people.h"
 #include "analysis/tools/study_arguments.h"
 #include "analysis/tools/table.h"
@@ -31,7 +32,9 @@ static const char help[] =
     "test of one half (the t-test of the people's shares against another P), the t interval of the shares, and "
     "a\n"
     "logistic mixed model; the binomial test of all answers stands below as the papers have it. Holm's p is\n"
-    "adjusted for all cells with an answer.\n";
+    "adjusted for all cells with an answer. Last, effects on choices that are no preference: of side, order, "
+    "place\nin the session, previous answer, switches and viewing time, by person, with Holm's p over these "
+    "checks.\n";
 
 static const char *const alternatives[] = {"two-sided", "less", "greater"};
 
@@ -79,7 +82,7 @@ static void cell_row(struct table *t, const struct choice_cell *cell)
     number_cell(t, cell->reaction_median_s);
 }
 
-static bool print_text(const struct sample *sample, const struct choices *c)
+static bool print_text(const struct sample *sample, const struct choices *c, const struct effects *effects)
 {
     char ci[32];
     snprintf(ci, sizeof ci, "%g %% CI", 100 * c->conf);
@@ -105,7 +108,7 @@ static bool print_text(const struct sample *sample, const struct choices *c)
         if (c->cells[i].equal)
             printf("%s: %" PRId64 " answers \"equal\" are not part of n.\n", c->cells[i].label,
                    c->cells[i].equal);
-    ok = ok && (!c->several || choices_people_print(c));
+    ok = ok && (!c->several || choices_people_print(c)) && choices_effects_print(effects);
     print_notes(sample, c);
     return ok;
 }
@@ -149,7 +152,7 @@ static void cell_json(struct json *json, const struct sample *sample, const stru
     json_close(json, '}');
 }
 
-static void print_json(const struct sample *sample, const struct choices *c)
+static void print_json(const struct sample *sample, const struct choices *c, const struct effects *effects)
 {
     struct json json = {stdout, false};
     json_open(&json, NULL, '{');
@@ -162,6 +165,7 @@ static void print_json(const struct sample *sample, const struct choices *c)
         cell_json(&json, sample, &c->cells[i], c->conf);
     json_close(&json, ']');
     choices_contrasts_json(&json, c);
+    choices_effects_json(&json, effects);
     json_integer(&json, "answers", c->answers);
     json_number(&json, "toggles_mean", c->toggles.mean);
     json_number(&json, "toggles_sd", c->toggles.sd);
@@ -211,18 +215,21 @@ static int run(const struct command *command, int argc, char **argv)
     desc.conf = arguments.conf;
     char error[SAMPLE_ERROR_SIZE];
     struct choices c;
+    struct effects effects;
     if (!choices_load_for(&c, &sample, &desc, error, sizeof error)) {
         code = command_fail(command, EXIT_FAILED, "%s", error);
     } else if (c.cell_count == 0) {
         code = command_fail(command, EXIT_FAILED, "%s: no choice was recorded that counts",
                             store_reader_path(sample.files[0]));
+    } else if (!effects_load(&effects, &sample, desc.conf, error, sizeof error)) {
+        code = command_fail(command, EXIT_FAILED, "%s", error);
     } else if (arguments.json) {
-        print_json(&sample, &c);
+        print_json(&sample, &c, &effects);
         code = command_finish(command);
     } else {
         study_title(&sample, "Choices");
-        code = print_text(&sample, &c) ? command_finish(command)
-                                       : command_fail(command, EXIT_FAILED, "not enough memory");
+        code = print_text(&sample, &c, &effects) ? command_finish(command)
+                                                 : command_fail(command, EXIT_FAILED, "not enough memory");
     }
     choices_free(&c);
     sample_free(&sample);
