@@ -8,6 +8,7 @@
 #include "analysis/report/choices.h"
 #include "analysis/report/effects.h"
 #include "analysis/report/frames.h"
+#include "analysis/report/frames_pairs.h"
 #include "analysis/report/jod.h"
 #include "analysis/report/ratings.h"
 #include "analysis/report/sample.h"
@@ -36,6 +37,7 @@ struct report {
     struct choices choices;
     struct ratings ratings;
     struct frames frames;
+    struct frames_pairs frames_pairs;
     struct checks checks;
     struct effects effects;
     struct audit audit;

@@ -198,12 +198,80 @@ static void halves_meet_the_convolution(void **state)
     assert_true(stat_signflip_values((const double[]){0.1, 0.2, -0.3}, 3).p_value == 1);
 }
 
+// Frames of the test option against the reference's, by trial and person.
+static void make_frames(void)
+{
+    char line[128], *fields[5];
+    static char sql[1 << 18];
+    int number = 0;
+    FILE *file = reference_open("frames_pairs_times.csv");
+    study_file_make("f.db", &(struct study_desc){.bare = true});
+    strcpy(sql, "BEGIN;DELETE FROM frame;");
+    assert_non_null(fgets(line, sizeof line, file));
+    while (fgets(line, sizeof line, file)) {
+        char *rest = line;
+        line[strcspn(line, "\n")] = '\0';
+        for (int i = 0; i < 5; i++)
+            fields[i] = reference_field(&rest, ',');
+        long p = strtol(fields[0], NULL, 10), trial = strtol(fields[1], NULL, 10), id = 1000 * p + trial;
+        snprintf(
+            sql + strlen(sql), sizeof sql - strlen(sql),
+            "INSERT OR IGNORE INTO trial VALUES(%ld, %ld, %ld, %ld, 'main', 'toggle', 'atrium', '{}', '{}', 2, "
+            "1, "
+            "'a', 'a', NULL, 1, NULL, 'done', 1, 0, 1);"
+            "INSERT INTO frame (session_id, segment_id, trial_id, attempt, number, option, condition_id, "
+            "phase, "
+            "fade_level, start_ns, cpu_us, gpu_us, present_estimated, late) VALUES(%ld, %ld, %ld, 1, %d, 'a', "
+            "%d, 'stimulus', 0, %d, 1, %s, 1, %s);",
+            id, p, p, trial + 60, p, p, id, number, fields[2][0] == 't' ? 2 : 1, number * 11000000, fields[3],
+            fields[4]);
+        number++;
+    }
+    fclose(file);
+    strcat(sql, "COMMIT;");
+    study_file_sql("f.db", sql);
+}
+
+static void frames_of_both_options_agree_with_r(void **state)
+{
+    (void)state;
+    static const char *const keys[] = {"\"difference_ms\":", "\"ratio\":", "\"late_share\":"};
+    char line[256], *fields[4];
+    make_frames();
+    const char *argv[] = {fovstats, "frames", "f.db", "--json", NULL};
+    struct program_result r = program_run(argv, NULL);
+    assert_int_equal(r.code, 0);
+    const char *pairs = strstr(r.out, "\"pairs\":");
+    FILE *file = reference_open("frames_pairs.csv");
+    assert_non_null(pairs);
+    assert_true(member(pairs, "people") == 5 && member(pairs, "trials") == 11);
+    assert_non_null(fgets(line, sizeof line, file));
+    for (int i = 0; i < 3; i++) {
+        char *rest = line;
+        assert_non_null(fgets(line, sizeof line, file));
+        line[strcspn(line, "\n")] = '\0';
+        for (int k = 0; k < 4; k++)
+            fields[k] = reference_field(&rest, ',');
+        const char *object = strstr(pairs, keys[i]);
+        const char *const names[] = {"estimate", "ci_low", "ci_high"};
+        assert_non_null(object);
+        for (int k = 0; k < 3; k++) {
+            double expected = reference_number(fields[k + 1]);
+            check_close("frames", fields[0], names[k], member(object, names[k]),
+                        i == 1 ? exp(expected) : expected);
+        }
+    }
+    fclose(file);
+    program_free(&r);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(checks_agree_with_r),
         cmocka_unit_test(what_cannot_be_estimated_is_said),
         cmocka_unit_test(halves_meet_the_convolution),
+        cmocka_unit_test(frames_of_both_options_agree_with_r),
     };
     return cmocka_run_group_tests_name("effects", tests, enter_folder, leave_folder);
 }
