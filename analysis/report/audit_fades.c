@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 
-static double frame_ns(const struct audit_pass *pass, size_t session)
+double audit_frame_ns(const struct audit_pass *pass, size_t session)
 {
     return 1e9 / pass->sample->sessions[pass->audit->sessions[session].session].refresh_hz; // NaN: not known
 }
@@ -40,8 +40,8 @@ static struct audit_moment *find_toggle(const struct audit_pass *pass, int64_t t
     return NULL;
 }
 
-static bool paused_between(const struct audit_pass *pass, int64_t trial_id, int64_t segment_id, int64_t from_ns,
-                           int64_t to_ns)
+bool audit_paused_between(const struct audit_pass *pass, int64_t trial_id, int64_t segment_id, int64_t from_ns,
+                          int64_t to_ns)
 {
     for (size_t i = first_moment(pass, trial_id); i < pass->moment_count; i++) {
         const struct store_moment_row *row = &pass->moments[i].row;
@@ -54,28 +54,31 @@ static bool paused_between(const struct audit_pass *pass, int64_t trial_id, int6
     return false;
 }
 
-// One fade is one finding, whichever way it was seen and however many of its corners are off.
-static bool note_fade(struct audit_pass *pass, size_t session, const struct store_audit_trial_row *trial,
-                      struct audit_moment *toggle, const char *what)
+bool audit_note_fade(struct audit_pass *pass, size_t session, const struct store_audit_trial_row *trial,
+                     int64_t number, const char *what)
 {
     struct audit *audit = pass->audit;
-    if (toggle && toggle->off)
-        return true;
-    if (toggle)
-        toggle->off = true;
     if (!sample_grow(&audit->fades, audit->fade_count, sizeof *audit->fades))
         return false;
     struct audit_fade *fade = &audit->fades[audit->fade_count++];
-    *fade = (struct audit_fade){.session = session,
-                                .trial_id = trial->id,
-                                .ordinal = trial->ordinal,
-                                .toggle = toggle ? toggle->toggle : 0};
+    *fade = (struct audit_fade){
+        .session = session, .trial_id = trial->id, .ordinal = trial->ordinal, .toggle = number};
     snprintf(fade->what, sizeof fade->what, "%s", what);
     return audit_note(pass, session, trial->id, AUDIT_FADES, 1);
 }
 
-// How a corner of the fade is off, if it is.
-static bool corner(const char *what, int64_t seen_ns, int64_t due_ns, double frame, char out[96])
+// One fade is one finding, whichever way it was seen and however many of its corners are off.
+static bool note_fade(struct audit_pass *pass, size_t session, const struct store_audit_trial_row *trial,
+                      struct audit_moment *toggle, const char *what)
+{
+    if (toggle && toggle->off)
+        return true;
+    if (toggle)
+        toggle->off = true;
+    return audit_note_fade(pass, session, trial, toggle ? toggle->toggle : 0, what);
+}
+
+bool audit_corner(const char *what, int64_t seen_ns, int64_t due_ns, double frame, char out[96])
 {
     double off = (double)(seen_ns - due_ns);
     if (fabs(off) <= AUDIT_FADE_FRAMES * frame)
@@ -88,7 +91,7 @@ static bool judge(struct audit_pass *pass, const struct store_audit_trial_row *t
                   const struct store_audit_frame_row *end)
 {
     const struct audit_watch *w = &pass->watch;
-    double frame = frame_ns(pass, pass->session);
+    double frame = audit_frame_ns(pass, pass->session);
     struct audit_moment *toggle = find_toggle(pass, w->trial_id, w->segment_id, w->full_ns, frame);
     int64_t gray = w->full_ns + trial->fade_ns[0], back = gray + trial->fade_ns[1],
             full = back + trial->fade_ns[2];
@@ -98,14 +101,14 @@ static bool judge(struct audit_pass *pass, const struct store_audit_trial_row *t
     bool off = !toggle;
     if (off)
         snprintf(what, sizeof what, "the option changed without a key press at its beginning");
-    off = off || corner("the fade ended", end->start_ns, full, frame, what) ||
-          corner("the fade began", w->first_ns, toggle->row.at_ns, frame, what);
+    off = off || audit_corner("the fade ended", end->start_ns, full, frame, what) ||
+          audit_corner("the fade began", w->first_ns, toggle->row.at_ns, frame, what);
     if (!off && trial->fade_ns[1] > 0 && w->gray_ns < 0) {
         snprintf(what, sizeof what, "no frame of the fade was gray");
         off = true;
     }
-    off = off || (w->gray_ns >= 0 && corner("it was gray", w->gray_ns, gray, frame, what)) ||
-          (w->back_ns >= 0 && corner("it came back from gray", w->back_ns, back, frame, what));
+    off = off || (w->gray_ns >= 0 && audit_corner("it was gray", w->gray_ns, gray, frame, what)) ||
+          (w->back_ns >= 0 && audit_corner("it came back from gray", w->back_ns, back, frame, what));
     if (toggle)
         toggle->judged = true;
     return !off || note_fade(pass, pass->session, trial, toggle, what);
@@ -124,10 +127,12 @@ bool audit_watch_frame(struct audit_pass *pass, const struct store_audit_frame_r
                                   .attempt = row->attempt,
                                   .last_number = row->number,
                                   .first_ns = -1};
-    if (!stimulus || !trial || !trial->switches)
+    if (!stimulus || !trial || !(trial->switches || trial->sequence))
         return true;
     w->gap = w->gap || row->number > w->last_number + 1;
     w->last_number = row->number;
+    if (trial->sequence)
+        return audit_watch_sequence(pass, trial, row);
     if (row->fade_level > 0) {
         bool gray = row->fade_level >= 1;
         if (w->first_ns < 0)
@@ -163,20 +168,20 @@ static bool judge_exposures(struct audit_pass *pass, const struct store_exposure
         session++;
     if (session == pass->audit->session_count) // it drew nothing: the times are those of the clock's steps
         return true;
-    double frame = frame_ns(pass, session);
+    double frame = audit_frame_ns(pass, session);
     struct audit_moment *toggle = find_toggle(pass, to->trial_id, to->segment_id, from->full_end_ns, frame);
     char what[96] = "";
     if (isnan(frame) ||
-        paused_between(pass, to->trial_id, to->segment_id, from->full_end_ns, to->full_start_ns))
+        audit_paused_between(pass, to->trial_id, to->segment_id, from->full_end_ns, to->full_start_ns))
         return true;
     bool off = !toggle;
     if (off)
         snprintf(what, sizeof what, "the option changed without a key press at its beginning");
     else
         toggle->judged = true;
-    off = off ||
-          corner("the fade ended", to->full_start_ns,
-                 from->full_end_ns + trial->fade_ns[0] + trial->fade_ns[1] + trial->fade_ns[2], frame, what);
+    off = off || audit_corner("the fade ended", to->full_start_ns,
+                              from->full_end_ns + trial->fade_ns[0] + trial->fade_ns[1] + trial->fade_ns[2],
+                              frame, what);
     return !off || note_fade(pass, session, trial, toggle, what);
 }
 

@@ -1,4 +1,4 @@
-// Shared by audit.c and audit_fades.c only.
+// Shared by audit*.c only.
 #ifndef ANALYSIS_REPORT_AUDIT_PRIVATE_H
 #define ANALYSIS_REPORT_AUDIT_PRIVATE_H
 
@@ -19,7 +19,10 @@ struct audit_watch {
     int64_t full_ns;          // that frame's time
     int64_t first_ns;         // the first frame of the fade, -1: not fading
     int64_t gray_ns, back_ns; // the first gray frame; the first one after it that is not
-    bool gap;                 // a frame row is missing in it
+    bool gap;                 // a frame row is missing in it; of a sequential trial, since the showing began
+    // Of a sequential trial only:
+    int64_t view_ns; // the first full frame of the showing
+    bool second;     // it is the second one
 };
 
 // One file's audit while its rows arrive.
@@ -44,6 +47,19 @@ size_t audit_find_session(struct audit_pass *pass,
                           int64_t session_id); // SAMPLE_NONE: not of the sample, or no memory
 // Counts for the session and for the trial (0: between trials).
 bool audit_note(struct audit_pass *pass, size_t session, int64_t trial_id, enum audit_count what, int64_t by);
+
+double audit_frame_ns(const struct audit_pass *pass, size_t session); // one refresh; NaN: not known
+bool audit_paused_between(const struct audit_pass *pass, int64_t trial_id, int64_t segment_id, int64_t from_ns,
+                          int64_t to_ns);
+// How a corner of a fade is off, if it is.
+bool audit_corner(const char *what, int64_t seen_ns, int64_t due_ns, double frame, char out[96]);
+// A finding; `number` is the how manieth fade of the trial, 0 where that is not known.
+bool audit_note_fade(struct audit_pass *pass, size_t session, const struct store_audit_trial_row *trial,
+                     int64_t number, const char *what);
+
+// Part of audit_watch_frame(): a frame of a sequential trial's pictures.
+bool audit_watch_sequence(struct audit_pass *pass, const struct store_audit_trial_row *trial,
+                          const struct store_audit_frame_row *row);
 
 // Follow the frames, then the exposures; each judges the fades that it sees from end to end.
 bool audit_watch_frame(struct audit_pass *pass, const struct store_audit_frame_row *row);

@@ -1,5 +1,8 @@
 #include "analysis/report/checks.h"
 
+#include "analysis/stats/multiple.h"
+
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,9 +34,9 @@ static void add_null(struct checks *c, struct check_person *person, const struct
         c->null_equal++;
         return;
     }
-    c->null_people += person->nulls == 0;
     person->nulls++;
     person->null_a += row->chosen_a;
+    person->null_first += row->chosen_first;
     c->nulls++;
     c->null_a += row->chosen_a;
     c->null_first += row->chosen_first;
@@ -66,6 +69,41 @@ static bool add_trial(void *user, const struct store_trial_row *row)
     return true;
 }
 
+static void finish_bias(struct check_bias *bias, const struct stat_person *counts, size_t count, double conf)
+{
+    struct stat_people sum = stat_people_sum(counts, count);
+    bias->people = sum.people;
+    bias->several = sum.most_n > 1;
+    bias->binomial = stat_binomial_test(sum.k, sum.n, 0.5, conf, STAT_TWO_SIDED);
+    bias->estimate = bias->binomial.estimate;
+    bias->p_value = bias->binomial.p_value;
+    if (!bias->several)
+        return;
+    bias->flip = stat_signflip(counts, count, STAT_TWO_SIDED);
+    bias->t = stat_people_t(counts, count, &(struct stat_ttest_options){.mean = 0.5, .conf = conf});
+    bias->estimate = stat_people_share(counts, count);
+    bias->p_value = bias->people > 1 ? bias->flip.p_value : (double)NAN; // one person has but one sign
+}
+
+static bool finish(struct checks *c, double conf)
+{
+    struct stat_person *counts = malloc((c->person_count + 1) * sizeof *counts);
+    if (!counts)
+        return false;
+    for (size_t i = 0; i < c->person_count; i++)
+        counts[i] = (struct stat_person){c->people[i].null_a, c->people[i].nulls};
+    finish_bias(&c->side, counts, c->person_count, conf);
+    for (size_t i = 0; i < c->person_count; i++)
+        counts[i].k = c->people[i].null_first;
+    finish_bias(&c->first, counts, c->person_count, conf);
+    free(counts);
+    double p[2] = {c->side.p_value, c->first.p_value};
+    stat_adjust_holm(p, 2, p);
+    c->side.holm = p[0];
+    c->first.holm = p[1];
+    return true;
+}
+
 bool checks_load(struct checks *out, struct sample *sample, double conf, char *error, size_t error_size)
 {
     bool ok = true;
@@ -81,8 +119,10 @@ bool checks_load(struct checks *out, struct sample *sample, double conf, char *e
         checks_free(out);
         return false;
     }
-    out->side = stat_binomial_test(out->null_a, out->nulls, 0.5, conf, STAT_TWO_SIDED);
-    out->first = stat_binomial_test(out->null_first, out->nulls, 0.5, conf, STAT_TWO_SIDED);
+    if (!finish(out, conf)) {
+        checks_free(out);
+        return false;
+    }
     error[0] = '\0';
     return true;
 }

@@ -5,10 +5,22 @@
 
 #include "analysis/report/sample.h"
 #include "analysis/stats/binomial.h"
+#include "analysis/stats/signflip.h"
+
+// Whether something that should not matter was chosen more often than one half of null trials. Where somebody
+// answered several, people are tested: exact sign-flip, t interval of their shares. Else the binomial test.
+struct check_bias {
+    bool several;
+    size_t people;                  // with an answer
+    struct stat_binomial binomial;  // NaN without a null trial
+    struct stat_signflip flip;      // NaN unless several
+    struct stat_ttest t;            // the same
+    double estimate, p_value, holm; // of the test that the data ask for; Holm's over the two checks
+};
 
 struct check_person {
     size_t person; // index
-    int64_t nulls, null_a, catches, missed;
+    int64_t nulls, null_a, null_first, catches, missed;
     bool excluded; // all sessions
 };
 
@@ -16,9 +28,8 @@ struct checks {
     size_t person_count;
     struct check_person *people;                   // those with a null or catch trial, as the sample has them
     int64_t nulls, null_a, null_first, null_equal; // nulls without "equal"; slot a, the first shown one chosen
-    int64_t null_people;
-    struct stat_binomial side, first; // NaN without a null trial
-    int64_t catches, missed;          // of everybody
+    struct check_bias side, first;
+    int64_t catches, missed; // of everybody
 };
 
 bool checks_load(struct checks *out, struct sample *sample, double conf, char *error, size_t error_size);

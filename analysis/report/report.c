@@ -76,6 +76,7 @@ static bool write_page(const struct report *r, char *error, size_t error_size)
     report_toggles(r);
     report_ratings(r);
     report_thresholds(r);
+    report_effects(r);
     report_checks(r);
     report_frames(r);
     report_bench(r);
@@ -264,7 +265,9 @@ static bool load(struct report *r, char *error, size_t error_size)
     }
     return ratings_load(&r->ratings, r->sample, r->conf, false, error, error_size) &&
            checks_load(&r->checks, r->sample, r->conf, error, error_size) &&
+           effects_load(&r->effects, r->sample, r->conf, error, error_size) &&
            frames_load(&r->frames, r->sample, error, error_size) &&
+           frames_pairs_load(&r->frames_pairs, r->sample, r->conf, error, error_size) &&
            audit_load(&r->audit, r->sample, error, error_size) && load_thresholds(r, error, error_size) &&
            (r->sample->exclusion_count == 0 ||
             (load_tests(&r->all, r, SAMPLE_ALL_DATA, error, error_size) &&
@@ -365,6 +368,7 @@ bool report_write_with_figures(struct sample *sample, double conf, const char *p
     choices_free(&r.choices);
     ratings_free(&r.ratings);
     frames_free(&r.frames);
+    frames_pairs_free(&r.frames_pairs);
     checks_free(&r.checks);
     audit_free(&r.audit);
     thresholds_free(&r.thresholds);

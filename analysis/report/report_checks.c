@@ -7,16 +7,36 @@
 #include <math.h>
 #include <string.h>
 
-static void bias_sentence(const struct report *r, const char *what, const struct stat_binomial *b)
+static void p_words(const struct report *r, const char *test, const struct check_bias *b)
 {
-    char p[24];
+    char p[24], holm[24];
     html_p_value(p, b->p_value);
-    html_printf(r->out,
-                "%s was chosen in %" PRId64 " of %" PRId64
-                " (%.1f\u00a0%%, %g\u00a0%% interval %.1f to %.1f\u00a0%%, "
-                "exact p %s%s). ",
-                what, b->k, b->n, 100 * b->estimate, 100 * r->conf, 100 * b->ci.low, 100 * b->ci.high,
-                p[0] == '<' ? "" : "= ", p);
+    html_p_value(holm, b->holm);
+    html_printf(r->out, "%s p %s%s, with Holm\u2019s correction for these two checks %s). ", test,
+                p[0] == '<' ? "" : "= ", p, holm);
+}
+
+static void bias_sentence(const struct report *r, const char *what, const struct check_bias *b)
+{
+    const struct stat_binomial *all = &b->binomial;
+    html_printf(r->out, "%s was chosen in %" PRId64 " of %" PRId64, what, all->k, all->n);
+    if (!b->several) {
+        html_printf(r->out, " (%.1f\u00a0%%, %g\u00a0%% interval %.1f to %.1f\u00a0%%, ", 100 * all->estimate,
+                    100 * r->conf, 100 * all->ci.low, 100 * all->ci.high);
+        p_words(r, "exact", b);
+        return;
+    }
+    html_printf(r->out, "; mean of the shares of %zu %s %.1f\u00a0%% (", b->people,
+                b->people == 1 ? "person" : "people", 100 * b->estimate);
+    if (isnan(b->t.ci_low))
+        fputs("no interval can be estimated, ", r->out);
+    else
+        html_printf(r->out, "%g\u00a0%% t interval %.1f to %.1f\u00a0%%, ", 100 * r->conf, 100 * b->t.ci_low,
+                    100 * b->t.ci_high);
+    if (isnan(b->p_value))
+        fputs("one person cannot be tested). ", r->out);
+    else
+        p_words(r, "exact sign-flip", b);
 }
 
 static void people_table(const struct report *r)
@@ -62,8 +82,7 @@ void report_checks(const struct report *r)
             "In null trials both options are the same, so a side that is chosen more often is a bias. ");
         bias_sentence(r, "Slot a", &c->side);
         bias_sentence(r, "The option shown first", &c->first);
-        if (c->nulls > c->null_people)
-            fputs("Answers of one person are pooled, so these p are too optimistic. ", r->out);
+        fputs("A large p does not show that there is no bias. ", r->out);
     }
     if (c->null_equal)
         html_printf(r->out, "\u201cEqual\u201d was answered in %" PRId64 " null trials. ", c->null_equal);

@@ -36,6 +36,53 @@ static void group_row(const struct report *r, const struct frame_group *g)
     fputs("</tr>\n", out);
 }
 
+static void pair_cells(FILE *out, double value, double low, double high, const char *unit)
+{
+    if (isnan(value))
+        html_cell(out, "td", "\u2013");
+    else if (isnan(low))
+        html_cell(out, "td", "%.2f%s", value, unit);
+    else
+        html_cell(out, "td", "%.2f%s (%.2f to %.2f)", value, unit, low, high);
+}
+
+static void pairs_table(const struct report *r)
+{
+    const struct frames_pairs *pairs = &r->frames_pairs;
+    FILE *out = r->out;
+    if (pairs->count == 0)
+        return;
+    fputs("<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"Frames of both options\"><table "
+          "class=\"wrap\">\n<caption>",
+          out);
+    html_printf(
+        out,
+        "Test option less reference within trials: medians of full frames, their ratio, and percent of them "
+        "late. Each trial counts once, a person\u2019s trials are averaged; in brackets %g\u00a0%% t "
+        "intervals over people, none for one person%s",
+        100 * r->conf, pairs->simulated_clock ? ". Late frames are the simulated clock\u2019s" : "");
+    fputs("</caption>\n<thead><tr><th scope=\"col\" class=\"word\">test option</th><th scope=\"col\" "
+          "class=\"word\">reference</th><th scope=\"col\" class=\"word\">time</th><th "
+          "scope=\"col\">trials</th><th "
+          "scope=\"col\">people</th><th scope=\"col\">difference</th><th scope=\"col\">ratio</th><th "
+          "scope=\"col\">late</th></tr></thead>\n<tbody>\n",
+          out);
+    for (size_t i = 0; i < pairs->count; i++) {
+        const struct frames_pair *p = &pairs->pairs[i];
+        fputs("<tr>", out);
+        html_cell(out, "th scope=\"row\" class=\"word\"", "%s", report_label(r, p->test));
+        html_cell(out, "td class=\"word\"", "%s", report_label(r, p->reference));
+        html_cell(out, "td class=\"word\"", "%s", p->measure == FRAMES_GPU ? "GPU" : "CPU");
+        html_cell(out, "td", "%zu", p->trials);
+        html_cell(out, "td", "%zu", p->people);
+        pair_cells(out, p->difference_ms, p->difference_t.ci_low, p->difference_t.ci_high, "\u00a0ms");
+        pair_cells(out, p->ratio, exp(p->log_ratio_t.ci_low), exp(p->log_ratio_t.ci_high), "");
+        pair_cells(out, 100 * p->late, 100 * p->late_t.ci_low, 100 * p->late_t.ci_high, "\u00a0%");
+        fputs("</tr>\n", out);
+    }
+    fputs("</tbody></table></div>\n", out);
+}
+
 void report_frames(const struct report *r)
 {
     const struct frames *f = &r->frames;
@@ -74,4 +121,5 @@ void report_frames(const struct report *r)
     for (size_t i = 0; i < f->group_count; i++)
         group_row(r, &f->groups[i]);
     fputs("</tbody></table></div>\n", out);
+    pairs_table(r);
 }

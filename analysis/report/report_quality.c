@@ -7,7 +7,7 @@
 #include <string.h>
 
 struct session_quality {
-    int64_t planned, done, invalid, samples, lost, frames, lost_frames;
+    int64_t planned, open, done, steps, invalid, samples, lost, frames, lost_frames;
 };
 
 struct filling {
@@ -22,8 +22,13 @@ static bool add_trial(void *user, const struct store_trial_row *row)
     size_t i = sample_find_session(f->report->sample, f->file, row->session_id);
     if (i == SAMPLE_NONE)
         return true;
-    f->sessions[i].planned += row->repeat_of == 0;
-    f->sessions[i].done += strcmp(row->status, "done") == 0;
+    // A staircase ends when it is sure, before the most trials that it may take: those are no loss.
+    bool fixed = strcmp(row->kind, "staircase") != 0;
+    bool done = strcmp(row->status, "done") == 0;
+    f->sessions[i].planned += fixed && row->repeat_of == 0;
+    f->sessions[i].open += !fixed;
+    f->sessions[i].done += fixed && done;
+    f->sessions[i].steps += !fixed && done;
     f->sessions[i].invalid += strcmp(row->status, "invalid") == 0;
     return true;
 }
@@ -50,7 +55,13 @@ static void session_row(const struct report *r, size_t index, const struct sessi
     html_cell(out, "td class=\"word\"", "%s", s->status);
     html_cell(out, "td class=\"word\"", "%s", s->started_at);
     html_cell(out, "td", "%" PRId64, s->segments);
-    html_cell(out, "td", "%" PRId64 " of %" PRId64, q->done, q->planned);
+    if (q->open && q->planned)
+        html_cell(out, "td", "%" PRId64 " of %" PRId64 ", %" PRId64 " of staircases", q->done, q->planned,
+                  q->steps);
+    else if (q->open)
+        html_cell(out, "td", "%" PRId64 " of staircases", q->steps);
+    else
+        html_cell(out, "td", "%" PRId64 " of %" PRId64, q->done, q->planned);
     html_cell(out, "td", "%" PRId64, q->invalid);
     if (q->samples)
         html_cell(out, "td", "%" PRId64 " (%.1f\u00a0%%)", q->samples,
@@ -84,6 +95,18 @@ static void lost_note(const struct report *r, const struct session_quality *sess
                 lost, frames);
 }
 
+static void open_note(const struct report *r, const struct session_quality *sessions)
+{
+    bool open = false;
+    for (size_t i = 0; i < r->sample->session_count; i++)
+        open = open || (!r->sample->sessions[i].excluded && sessions[i].open);
+    if (open)
+        fputs("<p class=\"note\">How many trials a staircase takes is not fixed: it ends when its rule is met, "
+              "so "
+              "its trials are counted and not held against a number.</p>\n",
+              r->out);
+}
+
 static bool sessions_table(const struct report *r, char *error, size_t error_size)
 {
     struct sample *s = r->sample;
@@ -111,6 +134,7 @@ static bool sessions_table(const struct report *r, char *error, size_t error_siz
             if (!s->sessions[i].excluded)
                 session_row(r, i, &f.sessions[i]);
         fputs("</tbody></table></div>\n", r->out);
+        open_note(r, f.sessions);
         lost_note(r, f.sessions);
     }
     free(f.sessions);

@@ -8,7 +8,9 @@
 #include "analysis/report/checks.h"
 #include "analysis/report/choice_factors.h"
 #include "analysis/report/choices.h"
+#include "analysis/report/effects.h"
 #include "analysis/report/frames.h"
+#include "analysis/report/frames_pairs.h"
 #include "analysis/report/jod.h"
 #include "analysis/report/ratings.h"
 #include "analysis/report/sample.h"
@@ -38,7 +40,9 @@ struct report {
     struct choice_factors factors;
     struct ratings ratings;
     struct frames frames;
+    struct frames_pairs frames_pairs;
     struct checks checks;
+    struct effects effects;
     struct audit audit;
     struct thresholds thresholds;
     struct adjusted adjusted;
@@ -73,6 +77,7 @@ void report_factorial(const struct report *r, const struct factorial *f, const s
                       const struct figure_pair *answers);
 void report_thresholds(const struct report *r); // staircases, adjusted values, preferences on one scale
 void report_frames(const struct report *r);
+void report_effects(const struct report *r); // on choices, that are no preference
 void report_checks(const struct report *r);  // null and catch trials
 void report_what_if(const struct report *r); // the same tests under other exclusions
 bool report_quality(const struct report *r, char *error, size_t error_size);

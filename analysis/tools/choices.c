@@ -2,6 +2,7 @@
 
 #include "analysis/tools/arguments.h"
 #include "analysis/tools/binomial_json.h"
+#include "analysis/tools/choices_effects.h"
 #include "analysis/tools/choices_equivalence.h"
 #include "analysis/tools/choices_factors.h"
 #include "analysis/tools/choices_people.h"
@@ -37,7 +38,16 @@ static const char help[] =
     "adjusted for all cells with an answer.\n"
     "Levels of a factor: between people Fisher's exact test of one answer each, else people are exchanged;\n"
     "within people McNemar's test or Cochran's Q of one answer each, else the t-test of each person's "
-    "difference.\n";
+    "difference.\n"
+    "Last, effects on choices that are no preference: of side, order, place in the session, previous answer,\n"
+    "switches and viewing time, by person, with Holm's p over these checks.\n";
+
+// What stands below the cells.
+struct parts {
+    struct choice_factors factors;
+    struct effects effects;
+    double margin; // of equivalence; NaN: none was given
+};
 
 static const char *const alternatives[] = {"two-sided", "less", "greater"};
 
@@ -85,8 +95,7 @@ static void cell_row(struct table *t, const struct choice_cell *cell)
     number_cell(t, cell->reaction_median_s);
 }
 
-static bool print_text(const struct sample *sample, const struct choices *c,
-                       const struct choice_factors *factors, double margin)
+static bool print_text(const struct sample *sample, const struct choices *c, const struct parts *parts)
 {
     char ci[32];
     snprintf(ci, sizeof ci, "%g %% CI", 100 * c->conf);
@@ -112,8 +121,9 @@ static bool print_text(const struct sample *sample, const struct choices *c,
         if (c->cells[i].equal)
             printf("%s: %" PRId64 " answers \"equal\" are not part of n.\n", c->cells[i].label,
                    c->cells[i].equal);
-    ok = ok && (!c->several || choices_people_print(c)) && choices_factors_print(factors) &&
-         choices_three_print(c) && (isnan(margin) || choices_equivalence_print(c, margin));
+    ok = ok && (!c->several || choices_people_print(c)) && choices_factors_print(&parts->factors) &&
+         choices_three_print(c) && (isnan(parts->margin) || choices_equivalence_print(c, parts->margin)) &&
+         choices_effects_print(&parts->effects);
     print_notes(sample, c);
     return ok;
 }
@@ -157,8 +167,7 @@ static void cell_json(struct json *json, const struct sample *sample, const stru
     json_close(json, '}');
 }
 
-static bool print_json(const struct sample *sample, const struct choices *c,
-                       const struct choice_factors *factors, double margin)
+static bool print_json(const struct sample *sample, const struct choices *c, const struct parts *parts)
 {
     struct json json = {stdout, false};
     json_open(&json, NULL, '{');
@@ -171,10 +180,11 @@ static bool print_json(const struct sample *sample, const struct choices *c,
         cell_json(&json, sample, &c->cells[i], c->conf);
     json_close(&json, ']');
     choices_contrasts_json(&json, c);
-    choices_factors_json(&json, factors);
+    choices_factors_json(&json, &parts->factors);
     bool ok = choices_three_json(&json, c);
-    if (!isnan(margin))
-        choices_equivalence_json(&json, c, margin);
+    if (!isnan(parts->margin))
+        choices_equivalence_json(&json, c, parts->margin);
+    choices_effects_json(&json, &parts->effects);
     json_integer(&json, "answers", c->answers);
     json_number(&json, "toggles_mean", c->toggles.mean);
     json_number(&json, "toggles_sd", c->toggles.sd);
@@ -243,25 +253,25 @@ static int run(const struct command *command, int argc, char **argv)
     desc.conf = arguments.conf;
     char error[SAMPLE_ERROR_SIZE];
     struct choices c;
-    struct choice_factors factors = {0};
+    struct parts parts = {.margin = margin};
     if (!choices_load_for(&c, &sample, &desc, error, sizeof error)) {
         code = command_fail(command, EXIT_FAILED, "%s", error);
     } else if (c.cell_count == 0) {
         code = command_fail(command, EXIT_FAILED, "%s: no choice was recorded that counts",
                             store_reader_path(sample.files[0]));
-    } else if (!choice_factors_load(&factors, &c)) {
+    } else if (!choice_factors_load(&parts.factors, &c)) {
         code = command_fail(command, EXIT_FAILED, "not enough memory");
+    } else if (!effects_load(&parts.effects, &sample, desc.conf, error, sizeof error)) {
+        code = command_fail(command, EXIT_FAILED, "%s", error);
     } else if (arguments.json) {
-        code = print_json(&sample, &c, &factors, margin)
-                   ? command_finish(command)
-                   : command_fail(command, EXIT_FAILED, "not enough memory");
+        code = print_json(&sample, &c, &parts) ? command_finish(command)
+                                               : command_fail(command, EXIT_FAILED, "not enough memory");
     } else {
         study_title(&sample, "Choices");
-        code = print_text(&sample, &c, &factors, margin)
-                   ? command_finish(command)
-                   : command_fail(command, EXIT_FAILED, "not enough memory");
+        code = print_text(&sample, &c, &parts) ? command_finish(command)
+                                               : command_fail(command, EXIT_FAILED, "not enough memory");
     }
-    choice_factors_free(&factors);
+    choice_factors_free(&parts.factors);
     choices_free(&c);
     sample_free(&sample);
     return code;

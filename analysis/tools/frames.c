@@ -1,6 +1,7 @@
 #include "analysis/report/frames.h"
 
 #include "analysis/tools/arguments.h"
+#include "analysis/tools/frames_pairs.h"
 #include "analysis/tools/study_arguments.h"
 #include "analysis/tools/table.h"
 
@@ -13,6 +14,7 @@ static const char help[] =
     "\n"
     "Frame times in milliseconds per option and phase: GPU, CPU and interval between frames (median, 95th\n"
     "and 99th percentile, type 7), late frames, and pixels shaded. Gray frames and text are not rendered.\n"
+    "Then the test option against the reference within trials, with an interval over people.\n"
     "  --audit      instead: rows against frames submitted, late frames by phase, stale gaze, foveation that "
     "was not\n"
     "               the one asked for, and the fade of every switch against the protocol; names the trials\n"
@@ -31,7 +33,8 @@ static void times_cells(struct table *t, const struct frame_times *times)
     }
 }
 
-static bool print_text(const struct sample *sample, const struct frames *f)
+static bool print_text(const struct sample *sample, const struct frames *f, const struct frames_pairs *pairs,
+                       double conf)
 {
     const char *const headings[] = {"<phase",  "<option",      "frames", "late",    "late %",
                                     "GPU p50", "p95",          "p99",    "CPU p50", "p95",
@@ -59,6 +62,7 @@ static bool print_text(const struct sample *sample, const struct frames *f)
     if (f->simulated_clock)
         puts("The clock was simulated: intervals and late frames are that clock's and say nothing of the "
              "machine.");
+    ok = ok && frames_pairs_print(sample, pairs, conf);
     study_notes(sample);
     return ok;
 }
@@ -73,7 +77,7 @@ static void times_json(struct json *json, const char *key, const struct frame_ti
     json_close(json, '}');
 }
 
-static void print_json(const struct sample *sample, const struct frames *f)
+static void print_json(const struct sample *sample, const struct frames *f, const struct frames_pairs *pairs)
 {
     struct json json = {stdout, false};
     json_open(&json, NULL, '{');
@@ -96,6 +100,7 @@ static void print_json(const struct sample *sample, const struct frames *f)
         json_close(&json, '}');
     }
     json_close(&json, ']');
+    frames_pairs_json(&json, sample, pairs);
     json_close(&json, '}');
     putchar('\n');
 }
@@ -131,19 +136,23 @@ static int run(const struct command *command, int argc, char **argv)
     }
     char error[SAMPLE_ERROR_SIZE];
     struct frames f;
-    if (!frames_load(&f, &sample, error, sizeof error)) {
+    struct frames_pairs pairs = {0};
+    if (!frames_load(&f, &sample, error, sizeof error) ||
+        !frames_pairs_load(&pairs, &sample, arguments.conf, error, sizeof error)) {
         code = command_fail(command, EXIT_FAILED, "%s", error);
     } else if (f.group_count == 0) {
         code =
             command_fail(command, EXIT_FAILED, "%s: no frame was recorded", store_reader_path(sample.files[0]));
     } else if (arguments.json) {
-        print_json(&sample, &f);
+        print_json(&sample, &f, &pairs);
         code = command_finish(command);
     } else {
         study_title(&sample, "Frame times");
-        code = print_text(&sample, &f) ? command_finish(command)
-                                       : command_fail(command, EXIT_FAILED, "not enough memory");
+        code = print_text(&sample, &f, &pairs, arguments.conf)
+                   ? command_finish(command)
+                   : command_fail(command, EXIT_FAILED, "not enough memory");
     }
+    frames_pairs_free(&pairs);
     frames_free(&f);
     sample_free(&sample);
     return code;

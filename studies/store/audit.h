@@ -14,9 +14,11 @@ struct store_segment_row { // by id
 
 struct store_audit_trial_row { // by id
     int64_t id, session_id, ordinal;
-    char foveate;       // 'g' gaze, 't' target
-    bool switches;      // the participant switches between two options
-    int64_t fade_ns[3]; // to gray, gray, back
+    char foveate;            // 'g' gaze, 't' target
+    bool switches;           // the participant switches between two options
+    bool sequence;           // shows two options one after the other, gray between them
+    int64_t fade_ns[3];      // to gray, gray, back
+    int64_t view_ns, gap_ns; // of a sequence: each option full; gray between them, fades apart
 };
 
 enum store_audit_moment { STORE_MOMENT_TOGGLE, STORE_MOMENT_PAUSE }; // a pause, or the question whether to end

@@ -73,6 +73,9 @@ static bool trial_row(sqlite3_stmt *s, const struct call *call)
         .foveate = letter(s, 3),
         .switches = sqlite3_column_int(s, 4),
         .fade_ns = {sqlite3_column_int64(s, 5), sqlite3_column_int64(s, 6), sqlite3_column_int64(s, 7)},
+        .sequence = sqlite3_column_int(s, 8),
+        .view_ns = sqlite3_column_int64(s, 9),
+        .gap_ns = sqlite3_column_int64(s, 10),
     };
     return call->trial(call->user, &row);
 }
@@ -84,7 +87,11 @@ bool store_read_audit_trials(struct store_reader *reader, store_audit_trial_fn e
         " coalesce(settings ->> '$.procedure', kind) IN ('toggle', 'adjust', 'staircase') AND"
         "  json_array_length(settings, '$.fade_s') = 3,"
         " round(1e9 * (settings ->> '$.fade_s[0]')), round(1e9 * (settings ->> '$.fade_s[1]')),"
-        " round(1e9 * (settings ->> '$.fade_s[2]')) FROM trial ORDER BY id";
+        " round(1e9 * (settings ->> '$.fade_s[2]')),"
+        " coalesce(settings ->> '$.procedure', kind) = 'sequential' AND json_array_length(settings, "
+        "'$.fade_s') = 3"
+        "  AND settings ->> '$.view_s' > 0 AND settings ->> '$.gap_s' IS NOT NULL,"
+        " round(1e9 * (settings ->> '$.view_s')), round(1e9 * (settings ->> '$.gap_s')) FROM trial ORDER BY id";
     return read_all(reader, sql, trial_row, &(struct call){.user = user, .trial = each});
 }
 

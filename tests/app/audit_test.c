@@ -262,6 +262,42 @@ static int set_up(void **state)
         ->status;
 }
 
+static void fades_of_sequential_trials_are_judged(void **state)
+{
+    (void)state;
+    const struct command_result *made = command(
+        "sed -e 's/^name: short/name: seq/' -e 's/kind: toggle/kind: sequential/' -e 's/^  advance: auto/  "
+        "advance: "
+        "auto\\n  view_s: 1\\n  gap_s: 0.5/' '" SOURCE_DIR "/studies/protocols/short.yaml' > '%s/seq.yaml' && "
+        "fovstudy run '%s/seq.yaml' --db '%s/seq.db' --participant p1 --observer sim --display headless --size "
+        "32x36 "
+        "--refresh 60 --gaze sim --scene atrium=town:triangles=20000 && cp '%s/seq.db' '%s/wait.db' && cp "
+        "'%s/seq.db' '%s/short.db' && cp '%s/seq.db' '%s/white.db'",
+        folder, folder, folder, folder, folder, folder, folder, folder, folder);
+    if (made->status != 0)
+        fail_msg("%s", made->err);
+    const char *json = audit("seq", "--json");
+    expect_findings(json, 0);
+    assert_int_equal(of(json, "switches"), 2);
+    assert_int_equal(of(json, "fades_judged"), 2);
+    // Gray for 50 ms longer between the options of the first trial: three frames of 60 Hz.
+    sql("wait",
+        "UPDATE frame SET start_ns = start_ns + 50000000 WHERE id > (SELECT min(id) + 10 FROM frame WHERE "
+        "trial_id = 1 AND option IS NULL AND fade_level = 1)");
+    expect_findings(audit("wait", "--json"), 1);
+    expect_said("wait", "trial 1, switch 1: it came back from gray 58.3 ms late\n");
+    // The second trial's last option fades 100 ms too early.
+    sql("short",
+        "UPDATE frame SET fade_level = 0.1, phase = 'fade' WHERE id IN (SELECT id FROM frame WHERE trial_id "
+        "= 2 AND phase = 'stimulus' AND fade_level = 0 ORDER BY id DESC LIMIT 7)");
+    expect_findings(audit("short", "--json"), 1);
+    expect_said("short", "trial 2, switch 2: the second option's fade began");
+    sql("white",
+        "UPDATE frame SET fade_level = 0.5 WHERE trial_id = 1 AND fade_level = 1 AND start_ns < (SELECT "
+        "max(full_start_ns) FROM exposure WHERE trial_id = 1)");
+    expect_said("white", "trial 1, switch 1: no frame between the options was gray\n");
+}
+
 int main(void)
 {
     const struct command_result *devices = command("fovstudy devices");
@@ -271,6 +307,7 @@ int main(void)
         cmocka_unit_test(a_clean_session_has_no_finding),
         cmocka_unit_test(planted_faults_are_counted_and_named),
         cmocka_unit_test(a_fade_is_seen_by_frames_and_by_exposures),
+        cmocka_unit_test(fades_of_sequential_trials_are_judged),
         cmocka_unit_test(gaze_that_stands_still_or_is_one_eyes),
         cmocka_unit_test(a_crash_leaves_no_count),
         cmocka_unit_test(what_was_asked_is_what_counts),

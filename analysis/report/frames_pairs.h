@@ -1,0 +1,35 @@
+// The test option's frames against the reference's, trial by trial.
+//
+// In each trial that drew both, the median time of the test option's full frames (phase 'stimulus') less that
+// of the reference's, their ratio, and the difference of the shares of late frames. A trial counts once,
+// however many frames it has; a person's trials are averaged (ratios by their logarithms), and the interval is
+// Student's t over people, whose trials belong together. Times are the GPU's, of trials without them the CPU's,
+// of both options alike. Practice and excluded trials are left out.
+#ifndef ANALYSIS_REPORT_FRAMES_PAIRS_H
+#define ANALYSIS_REPORT_FRAMES_PAIRS_H
+
+#include "analysis/report/sample.h"
+#include "analysis/stats/ttest.h"
+
+enum frames_measure { FRAMES_GPU, FRAMES_CPU, FRAMES_MEASURES };
+
+struct frames_pair {
+    size_t test, reference; // conditions
+    enum frames_measure measure;
+    size_t trials, people;
+    double difference_ms, ratio, late; // means over people; late: of shares, NaN where lateness is not known
+    // Intervals: NaN for fewer than two people, or where all have the same value.
+    struct stat_ttest difference_t, log_ratio_t, late_t;
+};
+
+struct frames_pairs {
+    size_t count;
+    struct frames_pair *pairs;
+    bool simulated_clock; // of any frame: late frames are then that clock's
+};
+
+bool frames_pairs_load(struct frames_pairs *out, struct sample *sample, double conf, char *error,
+                       size_t error_size);
+void frames_pairs_free(struct frames_pairs *pairs);
+
+#endif
