@@ -7,6 +7,7 @@
 #include "analysis/report/checks.h"
 #include "analysis/report/choices.h"
 #include "analysis/report/frames.h"
+#include "analysis/report/gaze_over.h"
 #include "analysis/report/jod.h"
 #include "analysis/report/ratings.h"
 #include "analysis/report/sample.h"
@@ -35,6 +36,8 @@ struct report {
     struct choices choices;
     struct ratings ratings;
     struct frames frames;
+    struct gaze_report gaze;
+    struct gaze_over gaze_over;
     struct checks checks;
     struct audit audit;
     struct thresholds thresholds;
@@ -66,6 +69,7 @@ void report_factorial(const struct report *r, const struct factorial *f, const s
                       const struct figure_pair *answers);
 void report_thresholds(const struct report *r); // staircases, adjusted values, preferences on one scale
 void report_frames(const struct report *r);
+void report_gaze(const struct report *r);
 void report_checks(const struct report *r);  // null and catch trials
 void report_what_if(const struct report *r); // the same tests under other exclusions
 bool report_quality(const struct report *r, char *error, size_t error_size);
