@@ -11,6 +11,7 @@
 #include "analysis/report/effects.h"
 #include "analysis/report/frames.h"
 #include "analysis/report/frames_pairs.h"
+#include "analysis/report/gaze_over.h"
 #include "analysis/report/jod.h"
 #include "analysis/report/ratings.h"
 #include "analysis/report/sample.h"
@@ -41,6 +42,8 @@ struct report {
     struct ratings ratings;
     struct frames frames;
     struct frames_pairs frames_pairs;
+    struct gaze_report gaze;
+    struct gaze_over gaze_over;
     struct checks checks;
     struct effects effects;
     struct audit audit;
@@ -78,6 +81,7 @@ void report_factorial(const struct report *r, const struct factorial *f, const s
 void report_thresholds(const struct report *r); // staircases, adjusted values, preferences on one scale
 void report_frames(const struct report *r);
 void report_effects(const struct report *r); // on choices, that are no preference
+void report_gaze(const struct report *r);
 void report_checks(const struct report *r);  // null and catch trials
 void report_what_if(const struct report *r); // the same tests under other exclusions
 bool report_quality(const struct report *r, char *error, size_t error_size);

@@ -7,7 +7,7 @@
 #include "analysis/tools/command.h"
 #include "analysis/tools/json.h"
 
-enum { STUDY_OPTIONS = 8 };
+enum { STUDY_OPTIONS = 16 };
 
 struct study_arguments {
     bool simulated, json;

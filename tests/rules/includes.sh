@@ -25,6 +25,7 @@ BEGIN {
     may["studies/protocol"] = "studies/protocol/ studies/engine/"
     may["studies/engine"] = "studies/protocol/ studies/engine/"
     may["studies/store"] = "studies/store/ studies/protocol/ stimuli/viewing.h"
+    may["analysis/gaze"] = "analysis/gaze/"
     may["analysis/stats"] = "analysis/stats/"
     may["analysis/image"] = "analysis/image/"
     may["analysis/tools"] = may["analysis/report"] = "analysis/ studies/store/ studies/engine/"

@@ -1,0 +1,21 @@
+// The outputs of fovstats gaze; shared by gaze*.c of this room only.
+#ifndef ANALYSIS_TOOLS_GAZE_PARTS_H
+#define ANALYSIS_TOOLS_GAZE_PARTS_H
+
+#include "analysis/report/gaze_over.h"
+#include "analysis/tools/json.h"
+
+bool gaze_print_text(const struct sample *sample, const struct gaze_report *gaze, const struct gaze_over *over);
+void gaze_print_json(const struct sample *sample, const struct gaze_report *gaze, const struct gaze_over *over);
+
+// Events as they are found, in CSV or as an array of JSON objects.
+struct gaze_events {
+    const struct sample *sample;
+    struct json json;
+    bool as_json;
+};
+void gaze_events_begin(struct gaze_events *events);
+void gaze_events_each(void *user, size_t session, int64_t trial_id, char eye, const struct gaze_event *event);
+void gaze_events_end(struct gaze_events *events);
+
+#endif
