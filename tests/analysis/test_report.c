@@ -215,9 +215,12 @@ static void every_planned_analysis_is_named(void **state)
 {
     (void)state;
     study_file_make("s.db", &(struct study_desc){.simulated = false});
-    study_file_sql("s.db", "UPDATE session SET settings = json_set(settings, '$.planned', json('["
-                           "{\"method\":\"paired_t\",\"of\":\"rating\",\"per\":\"order\"},"
-                           "{\"method\":\"mean\",\"of\":\"reaction\",\"per\":\"-\"}]'))");
+    study_file_sql("s.db",
+                   "UPDATE session SET settings = json_set(settings, '$.planned', json('["
+                   "{\"method\":\"paired_t\",\"of\":\"rating\",\"per\":\"order\"},"
+                   "{\"method\":\"paired_t\",\"of\":\"choice\",\"per\":\"factor\"},"
+                   "{\"method\":\"binomial\",\"of\":\"choice\",\"per\":\"study\"},"
+                   "{\"method\":\"mean\",\"of\":\"reaction\",\"per\":\"-\"}]'), '$.title', 'Blocks & <b>')");
     const char *argv[] = {fovstats, "report", "s.db", "-o", "r.html", NULL};
     struct program_result r = program_run(argv, NULL);
     assert_int_equal(r.code, 0);
@@ -226,8 +229,13 @@ static void every_planned_analysis_is_named(void **state)
     assert_int_equal(count(page, "<li>paired t of rating, per order: section \u201cRatings\u201d</li>"), 1);
     assert_int_equal(count(page, "<li>mean of reaction: <strong>not computed by this version</strong></li>"),
                      1);
+    assert_non_null(strstr(page, "<p>Blocks &amp; &lt;b&gt;</p>\n</header>"));
+    assert_non_null(strstr(page, "paired t of choice, per factor: levels of factors are compared"));
+    assert_non_null(strstr(page, "binomial of choice, per study: a person\u2019s cells are never joined"));
+    assert_non_null(strstr(page, "Levels of factors, in cells that are otherwise the same"));
     free(page);
     page = report(&(struct study_desc){.simulated = false});
+    assert_null(strstr(page, "Blocks"));
     assert_non_null(strstr(page, "The protocol planned none, or an earlier version recorded the sessions."));
     free(page);
 }
