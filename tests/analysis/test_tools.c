@@ -218,9 +218,9 @@ static void wrong_use(void **state)
 static void help_everywhere(void **state)
 {
     (void)state;
-    const char *names[] = {"binom", "choices", "ratings", "frames", "report"};
+    const char *names[] = {"binom", "choices", "ratings", "frames", "power", "report"};
     struct program_result all = FOVSTATS("--help");
-    for (int i = 0; i < 5; i++) {
+    for (int i = 0; i < 6; i++) {
         struct program_result r = FOVSTATS(names[i], "--help");
         assert_int_equal(r.code, 0);
         assert_non_null(strstr(r.out, names[i]));
