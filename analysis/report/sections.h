@@ -28,6 +28,8 @@ struct figure_pair {
 struct report_tests {
     struct choices choices;
     struct ratings ratings;
+    struct thresholds thresholds; // without Bayes' rule
+    struct jod jod;               // without intervals
 };
 
 struct report {
@@ -73,6 +75,7 @@ void report_frames(const struct report *r);
 void report_effects(const struct report *r); // on choices, that are no preference
 void report_checks(const struct report *r);  // null and catch trials
 void report_what_if(const struct report *r); // the same tests under other exclusions
+void report_what_if_scales(const struct report *r); // its rows of thresholds and JOD
 bool report_quality(const struct report *r, char *error, size_t error_size);
 void report_audit(const struct report *r); // every frame accounted for
 void report_definitions(const struct report *r);
