@@ -72,9 +72,9 @@ void report_factorial(const struct report *r, const struct factorial *f, const s
                       const struct figure_pair *answers);
 void report_thresholds(const struct report *r); // staircases, adjusted values, preferences on one scale
 void report_frames(const struct report *r);
-void report_effects(const struct report *r); // on choices, that are no preference
-void report_checks(const struct report *r);  // null and catch trials
-void report_what_if(const struct report *r); // the same tests under other exclusions
+void report_effects(const struct report *r);        // on choices, that are no preference
+void report_checks(const struct report *r);         // null and catch trials
+void report_what_if(const struct report *r);        // the same tests under other exclusions
 void report_what_if_scales(const struct report *r); // its rows of thresholds and JOD
 bool report_quality(const struct report *r, char *error, size_t error_size);
 void report_audit(const struct report *r); // every frame accounted for
