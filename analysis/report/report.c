@@ -242,7 +242,10 @@ static bool load_tests(struct report_tests *out, struct report *r, enum sample_r
 {
     sample_apply(r->sample, rules);
     bool ok = choices_load(&out->choices, r->sample, r->conf, error, error_size) &&
-              ratings_load(&out->ratings, r->sample, r->conf, false, error, error_size);
+              ratings_load(&out->ratings, r->sample, r->conf, false, error, error_size) &&
+              thresholds_load(&out->thresholds, r->sample, &(struct threshold_options){.conf = r->conf}, error,
+                              error_size) &&
+              jod_load(&out->jod, r->sample, r->conf, 0, JOD_SEED, error, error_size);
     sample_apply(r->sample, SAMPLE_RULES);
     return ok;
 }
@@ -291,6 +294,8 @@ static bool load(struct report *r, char *error, size_t error_size)
 static void free_tests(struct report_tests *tests)
 {
     choices_free(&tests->choices);
+    thresholds_free(&tests->thresholds);
+    jod_free(&tests->jod);
     ratings_free(&tests->ratings);
 }
 

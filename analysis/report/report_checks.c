@@ -286,5 +286,6 @@ void report_what_if(const struct report *r)
         option_rows(r, &r->all.ratings.options.items[i]);
     for (size_t i = 0; i < r->all.ratings.factorials.count; i++)
         effect_rows(r, &r->all.ratings.factorials.items[i]);
+    report_what_if_scales(r);
     fputs("</tbody></table></div>\n", out);
 }

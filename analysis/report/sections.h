@@ -31,6 +31,8 @@ struct figure_pair {
 struct report_tests {
     struct choices choices;
     struct ratings ratings;
+    struct thresholds thresholds; // without Bayes' rule
+    struct jod jod;               // without intervals
 };
 
 struct report {
@@ -82,8 +84,9 @@ void report_thresholds(const struct report *r); // staircases, adjusted values, 
 void report_frames(const struct report *r);
 void report_effects(const struct report *r); // on choices, that are no preference
 void report_gaze(const struct report *r);
-void report_checks(const struct report *r);  // null and catch trials
-void report_what_if(const struct report *r); // the same tests under other exclusions
+void report_checks(const struct report *r);         // null and catch trials
+void report_what_if(const struct report *r);        // the same tests under other exclusions
+void report_what_if_scales(const struct report *r); // its rows of thresholds and JOD
 bool report_quality(const struct report *r, char *error, size_t error_size);
 void report_bench(const struct report *r);
 bool report_draw_bench(struct report *r, char *error, size_t error_size);
