@@ -5,9 +5,9 @@
 #include <string.h>
 
 // Adding a subcommand: its file, its declaration in command.h, its line here.
-static const struct command *const commands[] = {
-    &command_binom, &command_choices, &command_ratings, &command_thresholds,
-    &command_jod,   &command_frames,  &command_report,  NULL};
+static const struct command *const commands[] = {&command_binom,      &command_choices, &command_ratings,
+                                                 &command_thresholds, &command_jod,     &command_frames,
+                                                 &command_report,     &command_merge,   NULL};
 
 static void print_help(FILE *out)
 {
@@ -20,10 +20,10 @@ static void print_help(FILE *out)
 int main(int argc, char **argv)
 {
     if (argc < 2) {
-        fputs(
-            "fovstats: which subcommand? One of binom, choices, ratings, thresholds, jod, frames, report; see "
-            "fovstats --help\n",
-            stderr);
+        fputs("fovstats: which subcommand? One of binom, choices, ratings, thresholds, jod, frames, report, "
+              "merge; see "
+              "fovstats --help\n",
+              stderr);
         return EXIT_USAGE;
     }
     if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) {
