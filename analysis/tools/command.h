@@ -19,6 +19,6 @@ struct sample;
 int frames_audit(const struct command *command, struct sample *sample, bool json);
 
 extern const struct command command_binom, command_choices, command_ratings, command_frames, command_report;
-extern const struct command command_thresholds, command_jod, command_merge;
+extern const struct command command_thresholds, command_jod, command_merge, command_export;
 
 #endif

@@ -5,9 +5,9 @@
 #include <string.h>
 
 // Adding a subcommand: its file, its declaration in command.h, its line here.
-static const struct command *const commands[] = {&command_binom,      &command_choices, &command_ratings,
-                                                 &command_thresholds, &command_jod,     &command_frames,
-                                                 &command_report,     &command_merge,   NULL};
+static const struct command *const commands[] = {
+    &command_binom,  &command_choices, &command_ratings, &command_thresholds, &command_jod,
+    &command_frames, &command_report,  &command_merge,   &command_export,     NULL};
 
 static void print_help(FILE *out)
 {
