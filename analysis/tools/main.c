@@ -8,7 +8,7 @@
 static const struct command *const commands[] = {
     &command_binom,      &command_choices, &command_ratings, &command_anova, //
     &command_thresholds, &command_jod,     &command_frames,  &command_power, //
-    &command_gaze,       &command_report,  NULL};
+    &command_gaze,       &command_report,  &command_merge,   &command_export, NULL};
 
 static void print_help(FILE *out)
 {
