@@ -2,6 +2,7 @@
 #include "program.h"
 #include "study_file.h"
 
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -92,6 +93,33 @@ static char *choices(const char *a, const char *b)
     return r.out;
 }
 
+// After the data's hash, which is of the people's codes too: a laboratory's name before them is another one.
+static const char *numbers(const char *json)
+{
+    const char *at = strstr(json, "\"program\":");
+    assert_non_null(at);
+    return at;
+}
+
+// Equal but for the last digits of numbers: sums go over sessions in the file's order.
+static void expect_same_numbers(const char *a, const char *b)
+{
+    while (*a && *b) {
+        char *end_a, *end_b;
+        double x = strtod(a, &end_a), y = strtod(b, &end_b);
+        if (end_a == a || end_b == b) {
+            if (*a++ != *b++)
+                fail_msg("%.80s\n%.80s", a - 1, b - 1);
+            continue;
+        }
+        if (!(fabs(x - y) <= 1e-12 * fabs(x)) && x != y)
+            fail_msg("%.80s\n%.80s", a, b);
+        a = end_a;
+        b = end_b;
+    }
+    assert_int_equal(*a, *b);
+}
+
 // The second laboratory: the same protocol and codes, other people on other days.
 static void make_labs(void)
 {
@@ -121,7 +149,7 @@ static void laboratories_are_joined(void **state)
     assert_string_equal(ask("m.db", "SELECT count(*) FROM sqlite_schema WHERE type = 'trigger'"), "2");
     assert_string_equal(ask("m.db", "SELECT count(*) FROM exclusion"), "2");
     char *together = choices("a.db", "b.db"), *merged = choices("m.db", NULL);
-    assert_string_equal(merged, together);
+    expect_same_numbers(numbers(merged), numbers(together));
     free(together);
     free(merged);
 }
@@ -138,13 +166,17 @@ static void copies_are_counted_once(void **state)
                         "{\"files\":2,\"participants\":22,\"sessions\":22,\"sessions_counted_once\":22}\n");
     assert_non_null(strstr(r.err, "session 22 of participant P22 is in several files; counted once"));
     program_free(&r);
+    char *alone = choices("a.db", NULL), *once = choices("m.db", NULL);
+    assert_string_equal(once, alone); // with the hash
+    free(alone);
+    free(once);
     // What a merge made may be merged again, also under a laboratory's name.
     unlink("n.db");
     expect_done(MERGE("--lab", "Ulm=m.db", "a.db", "-o", "n.db"), "22 participants, 22 sessions; 22 were");
     unlink("o.db");
     expect_done(MERGE("n.db", "m.db", "a.db", "-o", "o.db"), "22 participants, 22 sessions; 44 were");
     char *first = choices("a.db", NULL), *merged = choices("o.db", NULL);
-    assert_string_equal(merged, first);
+    expect_same_numbers(numbers(merged), numbers(first));
     free(first);
     free(merged);
 }
@@ -165,7 +197,7 @@ static void the_later_copy_holds(void **state)
         assert_string_equal(ask("m.db", "SELECT count(*) || ' ' || sum(status = 'running') FROM session"),
                             "22 0");
         char *later = choices("later.db", NULL), *merged = choices("m.db", NULL);
-        assert_string_equal(merged, later);
+        expect_same_numbers(numbers(merged), numbers(later));
         free(later);
         free(merged);
     }
