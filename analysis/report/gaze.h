@@ -54,8 +54,9 @@ struct gaze_record {
     size_t person, session; // session SAMPLE_NONE: of all the person's sessions
     char eye;               // 'l', 'r', 'b'
     struct gaze_quality quality;
-    int64_t between, superseded; // samples left out: between trials, of attempts that were not the last
-    struct gaze_bins edges;      // ms without a sample at the ends of trials; owned
+    int64_t received, received_invalid; // all samples of the session, also those left out
+    int64_t between, superseded;        // samples left out: between trials, of attempts that were not the last
+    struct gaze_bins edges;             // ms without a sample at the ends of trials; owned
     size_t target_count;
     struct gaze_target targets[GAZE_TARGETS];
     double rate_hz, nominal_hz;              // measured; NaN where it is not
@@ -67,6 +68,7 @@ struct gaze_record {
 
 struct gaze_latency { // of one session
     size_t session;
+    int64_t lost;                       // stimulus frames drawn while the gaze was lost, not part of `frames`
     int64_t frames, estimated, unknown; // frames that followed the gaze; time of light estimated, not known
     struct gaze_bins age, to_light;     // ms; to_light from the sample's arrival to its frame's light; owned
 };

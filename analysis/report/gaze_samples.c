@@ -192,6 +192,8 @@ static bool add_sample(void *user, const struct store_gaze_sample *row)
         return false;
     if (eye->record == SAMPLE_NONE)
         return true;
+    record_of(r, eye)->received++;
+    record_of(r, eye)->received_invalid += !row->valid;
     if (!last_attempt) {
         record_of(r, eye)->between += !r->current;
         record_of(r, eye)->superseded += r->current != NULL;

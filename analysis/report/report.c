@@ -6,6 +6,7 @@
 #include "report_css.h"
 
 #include <errno.h>
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -248,13 +249,56 @@ static bool load_gaze(struct report *r, char *error, size_t error_size)
     return false;
 }
 
+// Gaze and frames are most of a study's rows. The audit of the frames goes on beside the rest, with readers of
+// its own, since a reader belongs to one thread; of the sample it reads only.
+struct audit_task {
+    struct report *report;
+    char error[SAMPLE_ERROR_SIZE];
+    bool ok;
+};
+
+static void *run_audit(void *user)
+{
+    struct audit_task *task = user;
+    struct sample sample = *task->report->sample;
+    sample.files = calloc(sample.file_count, sizeof sample.files[0]);
+    task->ok = sample.files != NULL;
+    if (!task->ok)
+        snprintf(task->error, sizeof task->error, "not enough memory");
+    for (size_t i = 0; i < sample.file_count && task->ok; i++) {
+        const char *path = store_reader_path(task->report->sample->files[i]);
+        sample.files[i] = store_reader_open(path, task->error, sizeof task->error);
+        task->ok = sample.files[i] != NULL;
+    }
+    task->ok = task->ok && audit_load(&task->report->audit, &sample, task->error, sizeof task->error);
+    for (size_t i = 0; sample.files && i < sample.file_count; i++)
+        if (sample.files[i])
+            store_reader_close(sample.files[i]);
+    free(sample.files);
+    return NULL;
+}
+
+static bool load_frames(struct report *r, char *error, size_t error_size)
+{
+    struct audit_task task = {.report = r};
+    pthread_t thread;
+    bool threaded = pthread_create(&thread, NULL, run_audit, &task) == 0;
+    bool ok = load_gaze(r, error, error_size) && frames_load(&r->frames, r->sample, error, error_size);
+    if (threaded)
+        pthread_join(thread, NULL);
+    else
+        run_audit(&task);
+    if (ok && !task.ok)
+        snprintf(error, error_size, "%s", task.error);
+    return ok && task.ok;
+}
+
 static bool load(struct report *r, char *error, size_t error_size)
 {
     return choices_load(&r->choices, r->sample, r->conf, error, error_size) &&
            ratings_load(&r->ratings, r->sample, r->conf, false, error, error_size) &&
            checks_load(&r->checks, r->sample, r->conf, error, error_size) &&
-           frames_load(&r->frames, r->sample, error, error_size) && load_gaze(r, error, error_size) &&
-           audit_load(&r->audit, r->sample, error, error_size) && load_thresholds(r, error, error_size) &&
+           load_frames(r, error, error_size) && load_thresholds(r, error, error_size) &&
            (r->sample->exclusion_count == 0 ||
             (load_tests(&r->all, r, SAMPLE_ALL_DATA, error, error_size) &&
              load_tests(&r->stricter, r, SAMPLE_STRICTER, error, error_size)));
