@@ -6,7 +6,8 @@
 //
 // Data loss in two parts: samples that came and are not valid, of those that came; and samples that did not
 // come, of those that were due at the nominal rate: between two samples of a trial, from its start to the first
-// and from the last to its end, and throughout trials without any.
+// and from the last to its end, and throughout trials without any; right to one sample at each end of a
+// trial.
 //
 // Distance to the fixation target (Weier et al. 2016, section 4.2.2): of valid samples within `region` (10.3
 // degrees left and right, 11.68 up and down there: what their tracker's calibration covers), from where the

@@ -72,6 +72,8 @@ static int by_id(const void *x, const void *y)
 static bool add_target(void *user, const struct store_target_row *row)
 {
     struct reading *r = user;
+    if (!isfinite(row->x_deg) || !isfinite(row->y_deg))
+        return true;
     if (!sample_grow(&r->targets, r->target_count, sizeof r->targets[0]))
         return !(r->no_memory = true);
     r->targets[r->target_count++] =
