@@ -49,7 +49,7 @@ double gaze_bins_quantile(const struct gaze_bins *bins, double p)
     for (size_t i = 0; i < bins->count; i++) {
         double here = (double)bins->values[i];
         if (here > 0 && passed + here >= below)
-            return bins->width * ((double)i + (below - passed) / here);
+            return bins->sums[i] / here;
         passed += here;
     }
     return INFINITY;

@@ -23,7 +23,7 @@ void gaze_bins_finish(struct gaze_bins *bins);                           // a ze
 void gaze_bins_add(struct gaze_bins *bins, double value); // negative counts as 0; NaN is passed over
 void gaze_bins_join(struct gaze_bins *to, const struct gaze_bins *from); // of the same width and count
 
-// The value below which the share p of all lies, linear within its bin; NaN for no values, infinity in the open
+// The mean of the bin in which the share p of all values is reached; NaN for no values, infinity in the open
 // bin. p in [0, 1].
 double gaze_bins_quantile(const struct gaze_bins *bins, double p);
 // Mean of the values in bins that lie wholly in [low, high]; NaN where there is none.

@@ -6,7 +6,8 @@
 //
 // Data loss in two parts: samples that came and are not valid, of those that came; and samples that did not
 // come, of those that were due at the nominal rate: between two samples of a trial, from its start to the first
-// and from the last to its end, and throughout trials without any.
+// and from the last to its end, and throughout trials without any; right to one sample at each end of a
+// trial.
 //
 // Distance to the fixation target (Weier et al. 2016, section 4.2.2): of valid samples within `region` (10.3
 // degrees left and right, 11.68 up and down there: what their tracker's calibration covers), from where the
@@ -54,8 +55,9 @@ struct gaze_record {
     size_t person, session; // session SAMPLE_NONE: of all the person's sessions
     char eye;               // 'l', 'r', 'b'
     struct gaze_quality quality;
-    int64_t between, superseded; // samples left out: between trials, of attempts that were not the last
-    struct gaze_bins edges;      // ms without a sample at the ends of trials; owned
+    int64_t received, received_invalid; // all samples of the session, also those left out
+    int64_t between, superseded;        // samples left out: between trials, of attempts that were not the last
+    struct gaze_bins edges;             // ms without a sample at the ends of trials; owned
     size_t target_count;
     struct gaze_target targets[GAZE_TARGETS];
     double rate_hz, nominal_hz;              // measured; NaN where it is not
@@ -67,6 +69,7 @@ struct gaze_record {
 
 struct gaze_latency { // of one session
     size_t session;
+    int64_t lost;                       // stimulus frames drawn while the gaze was lost, not part of `frames`
     int64_t frames, estimated, unknown; // frames that followed the gaze; time of light estimated, not known
     struct gaze_bins age, to_light;     // ms; to_light from the sample's arrival to its frame's light; owned
 };

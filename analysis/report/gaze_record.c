@@ -57,8 +57,9 @@ void gaze_record_close(struct gaze_record *record, const struct gaze_options *op
         if (record->edges.values[i])
             record->missing += floor(record->edges.sums[i] / (double)record->edges.values[i] / due_ms) *
                                (double)record->edges.values[i];
-    record->main_sequence =
-        stat_main_sequence(record->amplitude, record->peak, record->saccade_count, options->conf);
+    if (record->session == SAMPLE_NONE)
+        record->main_sequence =
+            stat_main_sequence(record->amplitude, record->peak, record->saccade_count, options->conf);
 }
 
 static bool join_target(struct gaze_record *record, const struct gaze_target *from)
@@ -90,6 +91,8 @@ bool gaze_record_join(struct gaze_record *to, const struct gaze_record *from)
 {
     gaze_quality_join(&to->quality, &from->quality);
     gaze_bins_join(&to->edges, &from->edges);
+    to->received += from->received;
+    to->received_invalid += from->received_invalid;
     to->between += from->between;
     to->superseded += from->superseded;
     if (!append(&to->amplitude, to->saccade_count, from->amplitude, from->saccade_count) ||

@@ -72,6 +72,8 @@ static int by_id(const void *x, const void *y)
 static bool add_target(void *user, const struct store_target_row *row)
 {
     struct reading *r = user;
+    if (!isfinite(row->x_deg) || !isfinite(row->y_deg))
+        return true;
     if (!sample_grow(&r->targets, r->target_count, sizeof r->targets[0]))
         return !(r->no_memory = true);
     r->targets[r->target_count++] =
@@ -192,6 +194,8 @@ static bool add_sample(void *user, const struct store_gaze_sample *row)
         return false;
     if (eye->record == SAMPLE_NONE)
         return true;
+    record_of(r, eye)->received++;
+    record_of(r, eye)->received_invalid += !row->valid;
     if (!last_attempt) {
         record_of(r, eye)->between += !r->current;
         record_of(r, eye)->superseded += r->current != NULL;

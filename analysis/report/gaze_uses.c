@@ -48,6 +48,10 @@ static bool add_use(void *user, const struct store_gaze_use *row)
     if (r->latency == SAMPLE_NONE)
         return true;
     struct gaze_latency *latency = &r->out->latencies[r->latency];
+    if (row->lost) {
+        latency->lost++;
+        return true;
+    }
     latency->frames++;
     latency->estimated += row->estimated && !isnan(row->to_light_ms);
     latency->unknown += isnan(row->to_light_ms);

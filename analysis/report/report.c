@@ -259,18 +259,6 @@ static bool load_thresholds(struct report *r, char *error, size_t error_size)
            jod_load(&r->jod, r->sample, r->conf, JOD_REPLICATES, JOD_SEED, error, error_size);
 }
 
-static bool load_gaze(struct report *r, char *error, size_t error_size)
-{
-    struct gaze_options options = gaze_options(GAZE_IVT);
-    options.conf = r->conf;
-    if (!gaze_load(&r->gaze, r->sample, &options, error, error_size))
-        return false;
-    if (gaze_over_people(&r->gaze_over, &r->gaze))
-        return true;
-    snprintf(error, error_size, "not enough memory");
-    return false;
-}
-
 static bool load(struct report *r, char *error, size_t error_size)
 {
     if (!choices_load(&r->choices, r->sample, r->conf, error, error_size))
@@ -282,10 +270,7 @@ static bool load(struct report *r, char *error, size_t error_size)
     return ratings_load(&r->ratings, r->sample, r->conf, false, error, error_size) &&
            checks_load(&r->checks, r->sample, r->conf, error, error_size) &&
            effects_load(&r->effects, r->sample, r->conf, error, error_size) &&
-           frames_load(&r->frames, r->sample, error, error_size) &&
-           frames_pairs_load(&r->frames_pairs, r->sample, r->conf, error, error_size) &&
-           load_gaze(r, error, error_size) &&
-           audit_load(&r->audit, r->sample, error, error_size) && load_thresholds(r, error, error_size) &&
+           report_load_frames(r, error, error_size) && load_thresholds(r, error, error_size) &&
            (r->sample->exclusion_count == 0 ||
             (load_tests(&r->all, r, SAMPLE_ALL_DATA, error, error_size) &&
              load_tests(&r->stricter, r, SAMPLE_STRICTER, error, error_size)));

@@ -73,7 +73,8 @@ void report_effects(const struct report *r)
     FILE *out = r->out;
     if (r->effects.choices == 0)
         return;
-    fputs("<h2>Effects on choices that are no preference</h2>\n<p>", out);
+    report_heading(r, "Effects on choices that are no preference");
+    fputs("<p>", out);
     html_printf(
         out,
         "Each person gives one value per check, which a preference does not move; people are tested, never "

@@ -51,17 +51,14 @@ static void who(const struct report *r, const struct gaze_record *record)
 
 static void quality_table(const struct report *r, const struct gaze_record *records, size_t count)
 {
-    static const char *const people[] = {"<participant",       "<eye",          "samples",  "Hz",
-                                         "not valid, %",       "missing, %",    "accuracy", "offset x, y",
-                                         "RMS-S2S h, v, both", "SD h, v, both", "BCEA",     NULL};
-    static const char *const sessions[] = {
-        "<participant",  "session",    "<eye",     "samples",     "Hz",
-        "not valid, %",  "missing, %", "accuracy", "offset x, y", "RMS-S2S h, v, both",
-        "SD h, v, both", "BCEA",       NULL};
+    static const char *const headings[] = {"<participant", "session",    "<eye",     "samples",     "Hz",
+                                           "not valid, %", "missing, %", "accuracy", "offset x, y", NULL};
+    static const char *const people[] = {"<participant", "<eye",     "samples",     "Hz", "not valid, %",
+                                         "missing, %",   "accuracy", "offset x, y", NULL};
     FILE *out = r->out;
     bool of_sessions = records == r->gaze.records;
-    table_head(out, of_sessions ? "Gaze quality per session" : "Gaze quality per person",
-               of_sessions ? sessions : people);
+    table_head(out, of_sessions ? "Gaze per session: data loss and accuracy" : "Gaze: data loss and accuracy",
+               of_sessions ? headings : people);
     for (size_t i = 0; i < count; i++) {
         const struct gaze_quality *q = &records[i].quality;
         const struct gaze_target *accuracy = gaze_accuracy(&records[i]);
@@ -75,6 +72,23 @@ static void quality_table(const struct report *r, const struct gaze_record *reco
             html_cell(out, "td", "%+.2f, %+.2f", accuracy->offset.mean_x, accuracy->offset.mean_y);
         else
             html_cell(out, "td", "\u2013");
+        fputs("</tr>\n", out);
+    }
+    table_foot(out);
+}
+
+static void precision_table(const struct report *r, const struct gaze_record *records, size_t count)
+{
+    static const char *const headings[] = {"<participant",  "session", "<eye", "RMS-S2S h, v, both",
+                                           "SD h, v, both", "BCEA",    NULL};
+    static const char *const people[] = {"<participant",  "<eye", "RMS-S2S h, v, both",
+                                         "SD h, v, both", "BCEA", NULL};
+    FILE *out = r->out;
+    bool of_sessions = records == r->gaze.records;
+    table_head(out, of_sessions ? "Precision per session" : "Precision", of_sessions ? headings : people);
+    for (size_t i = 0; i < count; i++) {
+        const struct gaze_quality *q = &records[i].quality;
+        who(r, &records[i]);
         three(out, gaze_quality_rms_x(q), gaze_quality_rms_y(q), gaze_quality_rms(q));
         three(out, gaze_spread_sd_x(&q->within), gaze_spread_sd_y(&q->within), gaze_spread_sd(&q->within));
         number(out, "%.3f", gaze_spread_bcea(&q->within, r->gaze.options.bcea_share));
@@ -90,17 +104,14 @@ static void events_table(const struct report *r)
                                            "fixations",
                                            "duration M (SD), ms",
                                            "saccades",
-                                           "amplitude M (SD)",
+                                           "amplitude M (SD), \u00b0",
                                            "duration M, ms",
                                            "peak M, \u00b0/s",
-                                           "V<sub>max</sub>, \u00b0/s",
-                                           "c, \u00b0",
                                            NULL};
     FILE *out = r->out;
-    table_head(out, "Fixations, saccades and their main sequence", headings);
+    table_head(out, "Fixations and saccades", headings);
     for (size_t i = 0; i < r->gaze.person_count; i++) {
         const struct gaze_quality *q = &r->gaze.people[i].quality;
-        const struct stat_main_sequence *m = &r->gaze.people[i].main_sequence;
         who(r, &r->gaze.people[i]);
         html_cell(out, "td", "%" PRId64 " (%" PRId64 " cut)", q->fixation_ms.n + q->fixations_cut,
                   q->fixations_cut);
@@ -116,11 +127,32 @@ static void events_table(const struct report *r)
             html_cell(out, "td", "\u2013");
         number(out, "%.1f", gaze_running_mean(&q->saccade_ms));
         number(out, "%.0f", gaze_running_mean(&q->peak_deg_s));
+        fputs("</tr>\n", out);
+    }
+    table_foot(out);
+}
+
+static void sequence_table(const struct report *r)
+{
+    static const char *const headings[] = {"<participant", "<eye", "saccades", "V<sub>max</sub>, \u00b0/s",
+                                           "c, \u00b0",    "k",    "b",        NULL};
+    FILE *out = r->out;
+    table_head(out, "Main sequence", headings);
+    for (size_t i = 0; i < r->gaze.person_count; i++) {
+        const struct stat_main_sequence *m = &r->gaze.people[i].main_sequence;
+        who(r, &r->gaze.people[i]);
+        html_cell(out, "td", "%zu", m->n);
         if (m->problem) {
             html_cell(out, "td colspan=\"2\" class=\"word\"", "not estimable: %s", m->problem);
         } else {
             html_cell(out, "td", "%.0f [%.0f, %.0f]", m->vmax.value, m->vmax.low, m->vmax.high);
             html_cell(out, "td", "%.2f [%.2f, %.2f]", m->c.value, m->c.low, m->c.high);
+        }
+        if (m->power_problem) {
+            html_cell(out, "td colspan=\"2\" class=\"word\"", "not estimable: %s", m->power_problem);
+        } else {
+            html_cell(out, "td", "%.1f [%.1f, %.1f]", m->k.value, m->k.low, m->k.high);
+            html_cell(out, "td", "%.3f [%.3f, %.3f]", m->b.value, m->b.low, m->b.high);
         }
         fputs("</tr>\n", out);
     }
@@ -242,7 +274,8 @@ static void methods(const struct report *r)
         "degrees, P = %g, Crossland & Rubin 2002) within fixations. Saccades are faster than %g\u00b0/s over "
         "%g ms (I-VT, Salvucci & Goldberg 2000; Olsen 2012), fixations last %g ms or more; gaps over %g ms "
         "break them, and what touches one is cut: counted, not measured. Main sequence: V = Vmax (1 \u2212 "
-        "exp(\u2212A / c)). Distance to the target as Weier et al. 2016, section 4.2.2: samples within "
+        "exp(\u2212A / c)) and V = k A^b. Distance to the target as Weier et al. 2016, section 4.2.2: samples "
+        "within "
         "%g\u00b0 left and right and %g\u00b0 up and down. Age: from a sample\u2019s arrival to the start of "
         "work on the frame, and to light.",
         o->bcea_share, o->rules.velocity_deg_s, o->rules.window_ms, o->rules.min_fixation_ms, o->gap_ms,
@@ -253,7 +286,7 @@ static void methods(const struct report *r)
 void report_gaze(const struct report *r)
 {
     const struct gaze_report *g = &r->gaze;
-    fputs("<h2>Gaze</h2>\n", r->out);
+    report_heading(r, "Gaze");
     if (g->record_count + g->latency_count + g->check_count == 0) {
         fputs("<p class=\"note\">No gaze was recorded in any trial.</p>\n", r->out);
         limits(r);
@@ -263,9 +296,13 @@ void report_gaze(const struct report *r)
     limits(r);
     if (g->record_count) {
         quality_table(r, g->people, g->person_count);
-        if (g->record_count != g->person_count)
+        precision_table(r, g->people, g->person_count);
+        if (g->record_count != g->person_count) {
             quality_table(r, g->records, g->record_count);
+            precision_table(r, g->records, g->record_count);
+        }
         events_table(r);
+        sequence_table(r);
         targets_table(r);
     }
     latencies_table(r);

@@ -33,17 +33,17 @@ static bool add_trial(void *user, const struct store_trial_row *row)
     return true;
 }
 
-static bool add_gaze(void *user, const struct store_gaze_row *row)
+static void add_gaze(const struct gaze_report *gaze, struct session_quality *sessions)
 {
-    struct filling *f = user;
-    size_t i = sample_find_session(f->report->sample, f->file, row->session_id);
-    if (i == SAMPLE_NONE)
-        return true;
-    f->sessions[i].samples = row->samples;
-    f->sessions[i].lost = row->invalid;
-    f->sessions[i].frames = row->stimulus_frames;
-    f->sessions[i].lost_frames = row->lost_frames;
-    return true;
+    for (size_t i = 0; i < gaze->record_count; i++) {
+        sessions[gaze->records[i].session].samples += gaze->records[i].received;
+        sessions[gaze->records[i].session].lost += gaze->records[i].received_invalid;
+    }
+    for (size_t i = 0; i < gaze->latency_count; i++) {
+        const struct gaze_latency *l = &gaze->latencies[i];
+        sessions[l->session].frames = l->frames + l->lost;
+        sessions[l->session].lost_frames = l->lost;
+    }
 }
 
 static void session_row(const struct report *r, size_t index, const struct session_quality *q)
@@ -115,12 +115,12 @@ static bool sessions_table(const struct report *r, char *error, size_t error_siz
     if (!ok)
         snprintf(error, error_size, "not enough memory");
     for (; ok && f.file < s->file_count; f.file++) {
-        ok = store_read_trials(s->files[f.file], add_trial, &f) &&
-             store_read_gaze_counts(s->files[f.file], add_gaze, &f);
+        ok = store_read_trials(s->files[f.file], add_trial, &f);
         if (!ok)
             snprintf(error, error_size, "%s", store_reader_error(s->files[f.file]));
     }
     if (ok) {
+        add_gaze(&r->gaze, f.sessions);
         fputs("<div class=\"table\" tabindex=\"0\" role=\"region\" "
               "aria-label=\"Sessions\"><table>\n<caption>Sessions"
               "</caption>\n<thead><tr><th scope=\"col\" class=\"word\">participant</th><th scope=\"col\" "

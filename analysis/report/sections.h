@@ -81,6 +81,7 @@ void report_rating_options(const struct report *r, const struct rating_options *
 void report_factorial(const struct report *r, const struct factorial *f, const struct figure_pair *means,
                       const struct figure_pair *answers);
 void report_thresholds(const struct report *r); // staircases, adjusted values, preferences on one scale
+bool report_load_frames(struct report *r, char *error, size_t error_size);
 void report_frames(const struct report *r);
 void report_effects(const struct report *r); // on choices, that are no preference
 void report_gaze(const struct report *r);

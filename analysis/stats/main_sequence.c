@@ -87,9 +87,9 @@ static struct stat_estimate estimate(double value, double std_error, double t)
 
 // Golden sections stop at the square root of the arithmetic's precision; Gauss-Newton steps end the search, and
 // give the covariance s^2 (J'J)^-1.
-static bool exponential(const struct data *d, double t, struct stat_main_sequence *out)
+static bool exponential(const struct data *d, double log_c, double t, struct stat_main_sequence *out)
 {
-    double c = exp(search(d)), ignored, vmax = best_vmax(d, c, &ignored), determinant = 0, squares = 0;
+    double c = exp(log_c), ignored, vmax = best_vmax(d, c, &ignored), determinant = 0, squares = 0;
     double ff = 0, fg = 0, gg = 0;
     for (int step = 0; step < 8; step++) {
         double fr = 0, gr = 0;
@@ -163,7 +163,8 @@ struct stat_main_sequence stat_main_sequence(const double *amplitude_deg, const 
     double t = qt(0.5 + conf / 2, (double)d.used - 2, true, false);
     out.power_problem = power(&d, t, &out) ? NULL : "all amplitudes are the same";
     out.problem = "peak velocity does not level off within the amplitudes seen";
-    if (!isnan(search(&d)) && exponential(&d, t, &out))
+    double log_c = search(&d);
+    if (!isnan(log_c) && exponential(&d, log_c, t, &out))
         out.problem = NULL;
     return out;
 }

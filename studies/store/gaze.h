@@ -26,8 +26,9 @@ struct store_target_row { // of one trial's stimulus frames that had a target, i
     double x_deg, y_deg;
 };
 
-struct store_gaze_use { // of a stimulus frame whose fovea followed a sample, in the order they were shown
+struct store_gaze_use { // of a stimulus frame whose fovea follows the gaze, in the order they were shown
     int64_t session_id;
+    bool lost;          // the gaze was lost or not known yet: nothing below is known
     double age_ms;      // of the sample when work on the frame began, since it arrived
     double to_light_ms; // from then until light left the display; NaN: not known
     bool estimated;     // the display did not report that time

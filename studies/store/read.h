@@ -99,11 +99,6 @@ struct store_exclusion_row {
     const char *rule, *rule_set, *reason, *by;
 };
 
-struct store_gaze_row { // one per session
-    int64_t session_id, samples, invalid;
-    int64_t stimulus_frames, lost_frames; // of those that follow a gaze; drawn while it was lost
-};
-
 // A trial of a staircase that was answered: what was shown and what came of it.
 struct store_step_row {
     int64_t trial_id, session_id, ordinal;
@@ -131,7 +126,6 @@ typedef bool (*store_trial_fn)(void *user, const struct store_trial_row *row);
 typedef bool (*store_rating_fn)(void *user, const struct store_rating_row *row);
 typedef bool (*store_frame_fn)(void *user, const struct store_frame_row *row);
 typedef bool (*store_exclusion_fn)(void *user, const struct store_exclusion_row *row);
-typedef bool (*store_gaze_fn)(void *user, const struct store_gaze_row *row);
 typedef bool (*store_step_fn)(void *user, const struct store_step_row *row);
 typedef bool (*store_adjusted_fn)(void *user, const struct store_adjusted_row *row);
 
@@ -144,7 +138,6 @@ bool store_read_trials(struct store_reader *reader, store_trial_fn each, void *u
 bool store_read_ratings(struct store_reader *reader, store_rating_fn each, void *user);
 bool store_read_frames(struct store_reader *reader, store_frame_fn each, void *user);
 bool store_read_exclusions(struct store_reader *reader, store_exclusion_fn each, void *user);
-bool store_read_gaze_counts(struct store_reader *reader, store_gaze_fn each, void *user);
 // Steps of main trials, by session, block, factors and ordinal: staircase after staircase.
 bool store_read_staircase_steps(struct store_reader *reader, store_step_fn each, void *user);
 // Of main adjust trials, by session and ordinal.

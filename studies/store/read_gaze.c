@@ -120,17 +120,18 @@ bool store_read_targets(struct store_reader *reader, int64_t trial_id, store_tar
 static bool use_row(sqlite3_stmt *s, const struct call *call)
 {
     struct store_gaze_use row = {.session_id = sqlite3_column_int64(s, 0),
-                                 .age_ms = sqlite3_column_double(s, 1) / 1e3,
+                                 .age_ms = real(s, 1) / 1e3,
                                  .to_light_ms = real(s, 2) / 1e6,
-                                 .estimated = sqlite3_column_int(s, 3)};
+                                 .estimated = sqlite3_column_int(s, 3),
+                                 .lost = sqlite3_column_int(s, 4)};
     return call->use(call->user, &row);
 }
 
 bool store_read_gaze_uses(struct store_reader *reader, store_gaze_use_fn each, void *user)
 {
     static const char sql[] =
-        "SELECT session_id, gaze_age_us, present_ns - start_ns, present_estimated FROM frame"
-        " WHERE gaze_age_us IS NOT NULL AND phase = 'stimulus' AND fovea_source = 'gaze'"
+        "SELECT session_id, gaze_age_us, present_ns - start_ns, present_estimated,"
+        " fovea_source = 'lost' FROM frame WHERE phase = 'stimulus' AND fovea_source IN ('gaze', 'lost')"
         " ORDER BY id";
     return read_all(reader, sql, 0, use_row, &(struct call){.user = user, .use = each}) &&
            store_reader_unchanged(reader);

@@ -15,7 +15,6 @@ struct call {
     store_rating_fn rating;
     store_frame_fn frame;
     store_exclusion_fn exclusion;
-    store_gaze_fn gaze;
     store_step_fn step;
     store_adjusted_fn adjusted;
 };
@@ -273,27 +272,6 @@ bool store_read_exclusions(struct store_reader *reader, store_exclusion_fn each,
     static const char sql[] = "SELECT trial_id, session_id, participant_id, rule, rule_set, reason, \"by\""
                               " FROM exclusion ORDER BY id";
     return read_rows(reader, sql, exclusion_row, &(struct call){.user = user, .exclusion = each});
-}
-
-static bool gaze_row(sqlite3_stmt *s, const struct call *call)
-{
-    struct store_gaze_row row = {.session_id = sqlite3_column_int64(s, 0),
-                                 .samples = sqlite3_column_int64(s, 1),
-                                 .invalid = sqlite3_column_int64(s, 2),
-                                 .stimulus_frames = sqlite3_column_int64(s, 3),
-                                 .lost_frames = sqlite3_column_int64(s, 4)};
-    return call->gaze(call->user, &row);
-}
-
-bool store_read_gaze_counts(struct store_reader *reader, store_gaze_fn each, void *user)
-{
-    static const char sql[] =
-        "SELECT g.session_id, g.samples, g.invalid, coalesce(f.frames, 0), coalesce(f.lost, 0) FROM"
-        " (SELECT session_id, count(*) AS samples, sum(NOT valid) AS invalid FROM gaze GROUP BY session_id) g"
-        " LEFT JOIN (SELECT session_id, count(*) AS frames, sum(fovea_source = 'lost') AS lost FROM frame"
-        "  WHERE phase = 'stimulus' AND fovea_source IN ('gaze', 'lost') GROUP BY session_id) f"
-        " ON f.session_id = g.session_id ORDER BY g.session_id";
-    return read_rows(reader, sql, gaze_row, &(struct call){.user = user, .gaze = each});
 }
 
 static bool step_row(sqlite3_stmt *s, const struct call *call)

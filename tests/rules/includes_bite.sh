@@ -18,6 +18,8 @@ try renderer/modes/regular/a.c '"renderer/modes/time_warped/x.h"' 1
 try studies/engine/a.c '"studies/store/store.h"' 1
 try studies/store/a.c '"studies/engine/plan.h"' 1
 try analysis/stats/a.c '"analysis/image/error.h"' 1
+try analysis/gaze/a.c '"studies/store/read.h"' 1
+try analysis/gaze/a.c '"analysis/stats/moments.h"' 1
 try app/session/a.c '"renderer/gpu/gpu.h"' 1
 try app/session/a.c '<sqlite3.h>' 1
 try app/fovbench/a.c '"analysis/stats/binomial.h"' 1
