@@ -1,4 +1,5 @@
 // Study and sample, and the methods paragraph.
+#include "analysis/report/facts.h"
 #include "analysis/report/html.h"
 #include "analysis/report/sections.h"
 #include "analysis/stats/moments.h"
@@ -7,76 +8,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-// One fact of a session as text, "" where it is not known.
-typedef void (*fact_fn)(const struct sample_session *session, char out[512]);
-
-static void fact_device(const struct sample_session *s, char out[512])
-{
-    snprintf(out, 512, "%s", s->device);
-}
-
-static void fact_driver(const struct sample_session *s, char out[512])
-{
-    snprintf(out, 512, "%s", s->driver);
-}
-
-static void fact_display(const struct sample_session *s, char out[512])
-{
-    snprintf(out, 512, "%s", s->display);
-}
-
-static void fact_rate(const struct sample_session *s, char out[512])
-{
-    if (!isnan(s->refresh_hz))
-        snprintf(out, 512, "%g Hz, %s clock", s->refresh_hz, s->simulated_clock ? "simulated" : "real");
-    else
-        snprintf(out, 512, "%s", s->simulated_clock ? "simulated clock" : "");
-}
-
-static void fact_size(const struct sample_session *s, char out[512])
-{
-    out[0] = '\0';
-    if (!isnan(s->width_px) && !isnan(s->height_px))
-        snprintf(out, 512, "%g \u00d7 %g px per eye", s->width_px, s->height_px);
-}
-
-static void fact_fov(const struct sample_session *s, char out[512])
-{
-    out[0] = '\0';
-    if (!isnan(s->fov_deg))
-        snprintf(out, 512, "%g\u00b0 vertical", s->fov_deg);
-}
-
-static void fact_seed(const struct sample_session *s, char out[512])
-{
-    snprintf(out, 512, "%" PRIu64, s->seed);
-}
-
-static void fact_version(const struct sample_session *s, char out[512])
-{
-    snprintf(out, 512, "%s", s->app_version);
-}
-
-static void fact_scenes(const struct sample_session *s, char out[512])
-{
-    snprintf(out, 512, "%s", s->scenes);
-}
-
-static void fact_observer(const struct sample_session *s, char out[512])
-{
-    snprintf(out, 512, "%s", s->observer);
-}
-
-static void fact_protocol(const struct sample_session *s, char out[512])
-{
-    snprintf(out, 512, "%s, SHA-256 %s", s->protocol_name, s->protocol_sha256);
-}
-
-static void fact_status(const struct sample_session *s, char out[512])
-{
-    snprintf(out, 512, "%s", s->status);
-}
 
 static size_t sessions_used(const struct sample *sample)
 {
@@ -90,7 +21,7 @@ static size_t sessions_used(const struct sample *sample)
 static void fact_row(const struct report *r, const char *name, fact_fn fact)
 {
     const struct sample *sample = r->sample;
-    char value[512], other[512];
+    char value[FACT], other[FACT];
     size_t distinct = 0;
     fprintf(r->out, "<tr><th scope=\"row\">%s</th><td>", name);
     for (size_t i = 0; i < sample->session_count; i++) {
@@ -111,37 +42,6 @@ static void fact_row(const struct report *r, const char *name, fact_fn fact)
             html_printf(r->out, " (%zu %s)", count, count == 1 ? "session" : "sessions");
     }
     fputs("</td></tr>\n", r->out);
-}
-
-// Cells pool sessions; where those differ in what was shown, the reader must know.
-static void differing_note(const struct report *r)
-{
-    static const struct {
-        const char *name;
-        fact_fn fact;
-        bool drawn;
-    } facts[] = {
-        {"protocol text", fact_protocol, false}, {"scenes", fact_scenes, false}, {"size", fact_size, true},
-        {"field of view", fact_fov, true},       {"rate", fact_rate, true},      {"device", fact_device, true}};
-    const struct sample *sample = r->sample;
-    char list[256] = "", first[512], value[512];
-    for (size_t k = 0; k < sizeof facts / sizeof facts[0]; k++) {
-        bool known = false, differs = false;
-        for (size_t i = 0; i < sample->session_count; i++) {
-            const struct sample_session *s = &sample->sessions[i];
-            if (s->excluded || (facts[k].drawn && !s->device[0])) // nothing was drawn without a device
-                continue;
-            facts[k].fact(s, known ? value : first);
-            differs = differs || (known && strcmp(first, value) != 0);
-            known = true;
-        }
-        if (differs)
-            snprintf(list + strlen(list), sizeof list - strlen(list), "%s%s", list[0] ? ", " : "",
-                     facts[k].name);
-    }
-    if (list[0])
-        fprintf(r->out, "<p class=\"note\">The sessions differ in: %s. The numbers below pool them.</p>\n",
-                list);
 }
 
 static bool person_used(const struct sample *sample, size_t person)
@@ -259,7 +159,10 @@ void report_sample(const struct report *r)
                 "<p class=\"note\">%zu participant %s in several files; each file\u2019s is taken for another "
                 "person.</p>\n",
                 sample_shared_codes(s), sample_shared_codes(s) == 1 ? "code stands" : "codes stand");
-    differing_note(r);
+    char differing[256];
+    if (facts_differing(s, differing, sizeof differing))
+        fprintf(r->out, "<p class=\"note\">The sessions differ in: %s. The numbers below pool them.</p>\n",
+                differing);
 }
 
 void report_methods(const struct report *r)
@@ -268,6 +171,12 @@ void report_methods(const struct report *r)
     fputs("<p>", r->out);
     if (r->choices.cell_count)
         report_choices_methods(r);
+    if (r->factors.count)
+        fputs("Levels of a factor were compared in cells that are otherwise the same: between people by "
+              "Fisher\u2019s exact test of one answer each, else by exchanging whole people; within people by "
+              "McNemar\u2019s exact test or Cochran\u2019s Q of one answer each, else by the t-test of each "
+              "person\u2019s difference. ",
+              r->out);
     if (r->ratings.question_count)
         fputs(
             "First ratings were compared between the two order groups by Welch\u2019s t-test, and the second "

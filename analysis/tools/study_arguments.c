@@ -1,5 +1,7 @@
 #include "analysis/tools/study_arguments.h"
 
+#include "analysis/report/facts.h"
+
 #include <inttypes.h>
 #include <stdio.h>
 
@@ -91,6 +93,9 @@ void study_notes(const struct sample *sample)
     if (sample_shared_codes(sample))
         printf("Codes that stand in several files: %zu; each file's is taken for another person.\n",
                sample_shared_codes(sample));
+    char differing[256];
+    if (facts_differing(sample, differing, sizeof differing))
+        printf("The sessions differ in: %s. The numbers pool them.\n", differing);
     for (size_t i = 0; i < sample->session_count; i++) {
         const struct sample_session *s = &sample->sessions[i];
         if (s->excluded)

@@ -271,6 +271,13 @@ static void one_protocol_is_reported(void **state)
     char *page = slurp("r.html");
     assert_non_null(strstr(page, "<p class=\"note\">The sessions differ in: protocol text."));
     free(page);
+    const char *const tools[] = {"choices", "ratings", "frames"};
+    for (size_t i = 0; i < sizeof tools / sizeof tools[0]; i++) {
+        const char *tool[] = {fovstats, tools[i], "s.db", NULL};
+        r = program_run(tool, NULL);
+        assert_non_null(strstr(r.out, "The sessions differ in: protocol text. The numbers pool them.\n"));
+        program_free(&r);
+    }
 }
 
 static void nothing_is_switched_in_sequential_trials(void **state)
