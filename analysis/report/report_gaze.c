@@ -195,7 +195,7 @@ static void targets_table(const struct report *r)
                     "Target \u201c%s\u201d: all samples M = %.2f\u00b0, SD = %.2f\u00b0, median %.2f\u00b0",
                     t->fixation, gaze_running_mean(&t->samples), gaze_running_sd(&t->samples), t->median);
         if (isnan(t->t.ci_low))
-            html_printf(out, "; over people not estimable (%zu).", t->people.n);
+            html_printf(out, "; over people not estimable (n = %zu).", t->people.n);
         else
             html_printf(out, "; over %zu people M = %.2f\u00b0 [%.2f, %.2f], SD = %.2f\u00b0.", t->people.n,
                         t->people.mean, t->t.ci_low, t->t.ci_high, t->people.sd);
@@ -237,11 +237,21 @@ static void limits(const struct report *r)
     const struct gaze_report *g = &r->gaze;
     FILE *out = r->out;
     size_t named = 0, failed = 0;
-    for (size_t i = 0; i < g->check_count; i++)
+    struct gaze_running accuracy = {.n = 0};
+    double worst = 0;
+    for (size_t i = 0; i < g->check_count; i++) {
         failed += !g->checks[i].passed;
+        if (isnan(g->checks[i].accuracy_deg))
+            continue;
+        gaze_running_add(&accuracy, g->checks[i].accuracy_deg);
+        worst = fmax(worst, g->checks[i].accuracy_deg);
+    }
     if (g->check_count)
-        html_printf(out, "Independent checks of the tracker: %zu points, %zu not passed.", g->check_count,
-                    failed);
+        fprintf(out, "<p>Independent checks of the tracker: points %zu, not passed %zu.", g->check_count,
+                failed);
+    if (accuracy.n)
+        fprintf(out, " Mean distance from the points: %.2f\u00b0, at worst %.2f\u00b0.", accuracy.mean, worst);
+    fputs(g->check_count ? "</p>\n" : "", out);
     for (size_t i = 0; i < g->silent_count; i++) {
         fputs("<p class=\"note\">", out);
         html_printf(out, "Session %" PRId64 " had a tracker and no sample in any trial.",

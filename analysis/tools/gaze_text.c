@@ -176,7 +176,7 @@ static bool print_targets(const struct sample *sample, const struct gaze_report 
         printf("%s: all samples M %.2f, SD %.2f, median %.2f deg; ", o->fixation,
                gaze_running_mean(&o->samples), gaze_running_sd(&o->samples), o->median);
         if (isnan(o->t.ci_low))
-            printf("over people not estimable (%zu).\n", o->people.n);
+            printf("over people not estimable (n = %zu).\n", o->people.n);
         else
             printf("over %zu people M %.2f [%.2f, %.2f], SD %.2f.\n", o->people.n, o->people.mean, o->t.ci_low,
                    o->t.ci_high, o->people.sd);
