@@ -81,8 +81,8 @@ struct store *store_open(const struct store_desc *desc, struct store_error *erro
 // Commits what waits, then closes. When the result is not STORE_OK, rows were lost and the error says how many.
 // The store is gone in any case; NULL is fine.
 enum store_result store_close(struct store *store, struct store_error *error);
-// store_close for work that failed before a session was made: a file that this store_open made, and that holds no
-// session, goes away again.
+// store_close for work that failed before a session was made: a file that this store_open made, and that holds
+// no session, goes away again.
 enum store_result store_abandon(struct store *store, struct store_error *error);
 
 // From now on a write waits at most this long for another program's: a running session must not stand still.

@@ -165,7 +165,8 @@ static void later_rules_are_late(void **state)
     for (int i = 0; i < 2; i++) {
         const struct command_result *result = exclude("late.db", option);
         assert_int_equal(result->status, 0);
-        assert_non_null(strstr(result->out, i ? "late rules were applied to 0 sessions" : "late rules were applied to 1 session "));
+        assert_non_null(strstr(result->out, i ? "late rules were applied to 0 sessions"
+                                              : "late rules were applied to 1 session "));
         expect(
             "late.db",
             "SELECT (SELECT count(*) FROM exclusion WHERE rule_set = 'late' AND rule = 'reaction') = count(*), "
