@@ -162,7 +162,7 @@ bool figure_adjusted(const struct adjusted_cell *const *cells, size_t count, con
         "set grid ytics lw 0.6 lt 1 lc rgb '#dfe2e8'\n"
         "plot 'data' index 0 using 1:2 with points pt 7 ps 0.6 lc rgb '" FIGURE_PALE "'"
         ", '' index 1 using ($1+0.12):2:3:4 with yerrorbars pt 7 ps 1.1 lw 2 lc rgb '" FIGURE_ORANGE
-        "', '' index 1 using 1:2:xtic(5) with points pt 7 ps 0\n",
+        "', '' index 1 using 1:2:xtic(5) with points pt 7 ps 0.01\n",
         (double)count - 0.5);
     return figure_end(&figure, desc->text, out_svg, error, error_size);
 }

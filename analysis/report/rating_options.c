@@ -1,8 +1,11 @@
 #include "analysis/report/rating_options.h"
 
+#include "analysis/report/level.h"
+
 #include "analysis/stats/multiple.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -132,6 +135,9 @@ static bool finish_question(struct rating_options *q, double conf, bool pratt)
         stat_adjust_holm(p, q->cell_count, p + q->cell_count);
     for (size_t i = 0; ok && i < q->cell_count; i++)
         q->cells[i].p_holm = p[q->cell_count + i];
+    for (size_t i = 0; i < q->cell_count; i++)
+        for (size_t k = 0; k < q->cell_count && !q->cells[i].name_block; k++)
+            q->cells[i].name_block = strcmp(q->cells[i].block, q->cells[k].block) != 0;
     free(p);
     free(difference);
     return ok;
@@ -143,6 +149,14 @@ bool rating_options_finish(struct rating_options_list *list, double conf, bool p
     for (size_t i = 0; ok && i < list->count; i++)
         ok = finish_question(&list->items[i], conf, pratt);
     return ok;
+}
+
+void rating_option_words(const struct sample *sample, const struct rating_option_cell *cell, char out[384])
+{
+    char words[256];
+    level_all(sample, cell->factors, words);
+    bool block = cell->name_block || !words[0];
+    snprintf(out, 384, "%.120s%s%s", block ? cell->block : "", block && words[0] ? ": " : "", words);
 }
 
 void rating_options_free(struct rating_options_list *list)

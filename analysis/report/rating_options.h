@@ -22,6 +22,7 @@ struct rating_option_cell {
     struct stat_wilcoxon rank;
     struct stat_effect effect, average; // d_z and d_av
     double p_holm;                      // of the t-test, over the cells of the question
+    bool name_block;                    // other cells of the question are of other blocks
 };
 
 struct rating_options {
@@ -54,6 +55,8 @@ bool rating_options_add(struct rating_options_list *list, struct sample *sample,
 void rating_options_close(struct rating_options_list *list, struct rating_options_open *open);
 // False where memory ran out.
 bool rating_options_finish(struct rating_options_list *list, double conf, bool pratt);
+// "pairs: epsilon 0.2", for a reader; the block where there are several, or no factor.
+void rating_option_words(const struct sample *sample, const struct rating_option_cell *cell, char out[384]);
 void rating_options_free(struct rating_options_list *list);
 
 #endif

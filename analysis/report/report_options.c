@@ -1,16 +1,15 @@
 // Both options of a trial, rated after the choice.
 #include "analysis/report/html.h"
-#include "analysis/report/level.h"
 #include "analysis/report/sections.h"
 
 #include <math.h>
 
 static void cell_heading(const struct report *r, const struct rating_option_cell *c)
 {
-    char words[256];
-    level_all(r->sample, c->factors, words);
+    char words[384];
+    rating_option_words(r->sample, c, words);
     fprintf(r->out, "<tr%s>", c->p_holm <= 1 - r->conf ? " class=\"outside\"" : "");
-    html_cell(r->out, "th scope=\"row\" class=\"word\"", "%s", words[0] ? words : c->block);
+    html_cell(r->out, "th scope=\"row\" class=\"word\"", "%s", words);
 }
 
 static void test_row(const struct report *r, const struct rating_option_cell *c)

@@ -42,9 +42,9 @@ bool ratings_print_options(const struct sample *sample, const struct rating_opti
     table_init(&t, headings);
     for (size_t i = 0; i < q->cell_count; i++) {
         const struct rating_option_cell *c = &q->cells[i];
-        char words[256];
-        level_all(sample, c->factors, words);
-        table_cell(&t, "%s", words[0] ? words : c->block);
+        char words[384];
+        rating_option_words(sample, c, words);
+        table_cell(&t, "%s", words);
         table_cell(&t, "%s", sample->conditions[c->test].label);
         table_cell(&t, "%s", sample->conditions[c->reference].label);
         table_cell(&t, "%zu", c->n);
