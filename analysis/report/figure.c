@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
@@ -152,4 +153,14 @@ bool figure_end(struct figure *figure, const struct figure_text *text, char **ou
     }
     figure_abandon(figure);
     return *out_svg != NULL;
+}
+
+double figure_tic_step(double range, int most_tics)
+{
+    double power = pow(10, floor(log10(range / most_tics)));
+    const double factors[] = {1, 2, 5, 10};
+    int i = 0;
+    while (i < 3 && factors[i] * power * most_tics < range)
+        i++;
+    return factors[i] * power;
 }

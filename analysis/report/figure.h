@@ -51,4 +51,7 @@ void figure_abandon(struct figure *figure);
 // SVG, or memory.
 char *figure_embeddable(const char *svg, const struct figure_text *text);
 
+// 1, 2 or 5 times a power of ten, so that at most `most_tics` steps fit into `range` > 0.
+double figure_tic_step(double range, int most_tics);
+
 #endif

@@ -37,16 +37,18 @@ static void write_metadata(FILE *out, const struct sample *sample)
 
 static void write_source(FILE *out, const struct sample *sample, double width, double height)
 {
-    double size = width < 500 ? 8 : 11;
+    bool narrow = width < 500;
+    double size = narrow ? 8 : 11;
     fprintf(out, "<text x=\"6\" y=\"%g\" font-size=\"%g\" fill=\"#565d6b\" %s>", height + LINE_PX - 7, size,
             fonts);
-    html_printf(out, "%.40s, data %.16s, fovstats " FOVSTUDY_VERSION, sample->protocol, sample->data_hash);
+    html_printf(out, "%.*s, data %.16s, fovstats " FOVSTUDY_VERSION, narrow ? 20 : 40, sample->protocol,
+                sample->data_hash);
     fputs("</text>\n", out);
     if (sample->simulated)
         fprintf(out,
                 "<text x=\"%g\" y=\"%g\" font-size=\"%g\" font-weight=\"bold\" text-anchor=\"end\" "
-                "fill=\"#8a1c1c\" %s>SIMULATED DATA: no person took part</text>\n",
-                width - 6, height + LINE_PX - 7, size, fonts);
+                "fill=\"#8a1c1c\" %s>SIMULATED%s</text>\n",
+                width - 6, height + LINE_PX - 7, size, fonts, narrow ? "" : " DATA: no person took part");
 }
 
 static void write_body(FILE *out, const char *at)

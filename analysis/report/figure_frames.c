@@ -16,17 +16,6 @@ size_t figure_frames_rows(const struct frames *frames)
     return rows;
 }
 
-// 1, 2 or 5 times a power of ten, so that at most `most_tics` steps fit into `range`.
-static double tic_step(double range, int most_tics)
-{
-    double power = pow(10, floor(log10(range / most_tics)));
-    const double factors[] = {1, 2, 5, 10};
-    int i = 0;
-    while (i < 3 && factors[i] * power * most_tics < range)
-        i++;
-    return factors[i] * power;
-}
-
 static double write_rows(FILE *data, const struct sample *sample, const struct frames *frames)
 {
     double most = 0;
@@ -61,7 +50,7 @@ bool figure_frames(const struct sample *sample, const struct frames *frames, con
             "set yrange [%.2f:-0.75]\nset xrange [0:%.6g]\nunset ytics\nset xtics 0,%.6g format '%%g ms'\n"
             "set lmargin 3\nset rmargin 3\nset tmargin 0.5\nset bmargin 2\n"
             "set grid xtics lw 0.6 lt 1 lc rgb '#dfe2e8'\n",
-            (double)rows - 0.4, most * 1.04, tic_step(most, desc->narrow ? 5 : 8));
+            (double)rows - 0.4, most * 1.04, figure_tic_step(most, desc->narrow ? 5 : 8));
     fputs("plot 'data' using 2:1:($4-$2):(0) with vectors nohead lw 5 lc rgb '" FIGURE_GREEN
           "', '' using 2:1:($3-$2):(0) with vectors nohead lw 5 lc rgb '" FIGURE_GREEN_EDGE
           "', '' using 2:1 with points pt 7 ps 1.2 lc rgb '" FIGURE_ORANGE

@@ -190,6 +190,7 @@ static bool draw_thresholds(struct report *r, char *error, size_t error_size)
             struct figure_desc desc = {narrow, &text};
             char **svg = narrow ? &r->threshold_figures[i].narrow : &r->threshold_figures[i].wide;
             if (r->thresholds.cells[i].steps &&
+                !r->thresholds.cells[i].graded && // a scale has no right answers
                 !figure_thresholds(&r->thresholds.cells[i], &desc, svg, error, error_size))
                 return false;
         }
