@@ -271,11 +271,17 @@ static bool load_gaze(struct report *r, char *error, size_t error_size)
     return false;
 }
 
+static bool load_planned(struct report *r, char *error, size_t error_size)
+{
+    const struct planned_sources sources = {&r->ratings, &r->thresholds, &r->adjusted};
+    return planned_load(&r->planned, r->sample, &r->plans, &sources, r->conf, error, error_size);
+}
+
 static bool load(struct report *r, char *error, size_t error_size)
 {
     if (!choices_load(&r->choices, r->sample, r->conf, error, error_size))
         return false;
-    if (!choice_factors_load(&r->factors, &r->choices)) {
+    if (!plans_load(&r->plans, r->sample) || !choice_factors_load(&r->factors, &r->choices)) {
         snprintf(error, error_size, "not enough memory");
         return false;
     }
@@ -284,8 +290,8 @@ static bool load(struct report *r, char *error, size_t error_size)
            effects_load(&r->effects, r->sample, r->conf, error, error_size) &&
            frames_load(&r->frames, r->sample, error, error_size) &&
            frames_pairs_load(&r->frames_pairs, r->sample, r->conf, error, error_size) &&
-           load_gaze(r, error, error_size) &&
-           audit_load(&r->audit, r->sample, error, error_size) && load_thresholds(r, error, error_size) &&
+           load_gaze(r, error, error_size) && audit_load(&r->audit, r->sample, error, error_size) &&
+           load_thresholds(r, error, error_size) && load_planned(r, error, error_size) &&
            (r->sample->exclusion_count == 0 ||
             (load_tests(&r->all, r, SAMPLE_ALL_DATA, error, error_size) &&
              load_tests(&r->stricter, r, SAMPLE_STRICTER, error, error_size)));
@@ -385,6 +391,8 @@ bool report_write_with_figures(struct sample *sample, double conf, const char *p
     free_figures(&r);
     choice_factors_free(&r.factors);
     choices_free(&r.choices);
+    plans_free(&r.plans);
+    planned_free(&r.planned);
     ratings_free(&r.ratings);
     frames_free(&r.frames);
     frames_pairs_free(&r.frames_pairs);
