@@ -53,15 +53,15 @@ static void sum_people(const struct planned_data *data, const struct planned_gro
 static void write_equivalence(struct planned_row *row, const struct stat_equivalence *e, double margin,
                               double alpha)
 {
-    static const char *const verdicts[] = {[STAT_UNDECIDED] = "neither it nor a difference is shown",
-                                           [STAT_DIFFERENT] = "a difference is shown, and it is not",
-                                           [STAT_WITHIN] = "it is shown",
-                                           [STAT_DIFFERENT_WITHIN] = "it is shown, and a difference as well"};
+    static const char *const verdicts[] = {[STAT_UNDECIDED] = "not shown, nor is a difference",
+                                           [STAT_DIFFERENT] = "not shown",
+                                           [STAT_WITHIN] = "shown",
+                                           [STAT_DIFFERENT_WITHIN] = "shown, beside a difference"};
     double low = 50 - 100 * margin, high = 50 + 100 * margin;
     if (isnan(e->p_value))
         snprintf(row->note, sizeof row->note, "equality within %.4g to %.4g %%: not estimable", low, high);
     else
-        snprintf(row->note, sizeof row->note, "equality within %.4g to %.4g %%: p = %.4f, %s", low, high,
+        snprintf(row->note, sizeof row->note, "equality within %.4g to %.4g %%: p = %.3g, %s", low, high,
                  e->p_value, verdicts[stat_verdict(row->p_value, e->p_value, alpha)]);
 }
 

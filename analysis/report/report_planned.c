@@ -18,23 +18,33 @@ static void write_plan(FILE *out, const struct plan *plan)
         html_printf(out, ", margin %.4g\u00a0%%", 100 * plan->margin);
 }
 
-static void estimate_cells(FILE *out, const struct planned_row *row)
+// Thresholds and adjusted values may be of any size; ratings, toggles and seconds are not.
+static void number(const struct planned_row *row, const struct plan *plan, double value, char out[32])
 {
-    double scale = row->share ? 100 : 1;
-    const char *unit = row->share ? "\u00a0%" : row->unit;
+    bool any_size = plan_is(plan, NULL, "threshold", NULL) || plan_is(plan, NULL, "adjusted", NULL);
+    if (row->share)
+        snprintf(out, 32, "%.1f", 100 * value);
+    else
+        snprintf(out, 32, any_size ? "%.4g" : "%.2f", value);
+}
+
+static void estimate_cells(FILE *out, const struct planned_row *row, const struct plan *plan)
+{
+    char estimate[32], low[32], high[32];
+    const char *unit = row->share ? "%" : row->unit;
+    number(row, plan, row->estimate, estimate);
+    number(row, plan, row->low, low);
+    number(row, plan, row->high, high);
     if (isnan(row->estimate))
         html_cell(out, "td", "\u2013");
     else if (row->effect_size)
         html_cell(out, "td", "\u03b7\u00b2\u209a %.3f", row->estimate);
     else
-        html_cell(out, "td", row->share ? "%.1f%s" : "%.4g%s%s", scale * row->estimate,
-                  row->share || !unit[0] ? unit : "\u00a0", row->share ? "" : unit);
+        html_cell(out, "td", "%s%s%s", estimate, unit[0] ? "\u00a0" : "", unit);
     if (isnan(row->low))
         html_cell(out, "td", "\u2013");
-    else if (row->share)
-        html_cell(out, "td", "%.1f to %.1f", scale * row->low, scale * row->high);
     else
-        html_cell(out, "td", "%.4g to %.4g", row->low, row->high);
+        html_cell(out, "td", "%s to %s", low, high);
 }
 
 static void p_cell(FILE *out, double value)
@@ -44,7 +54,7 @@ static void p_cell(FILE *out, double value)
     html_cell(out, "td", "%s", isnan(value) ? "\u2013" : p);
 }
 
-static void planned_row(FILE *out, const struct planned_row *row)
+static void planned_row(FILE *out, const struct planned_row *row, const struct plan *plan)
 {
     fputs("<tr>", out);
     html_cell(out, "th scope=\"row\" class=\"word\"", "%s", row->words[0] ? row->words : "all");
@@ -55,7 +65,7 @@ static void planned_row(FILE *out, const struct planned_row *row)
         return;
     }
     html_cell(out, "td", "%zu", row->people);
-    estimate_cells(out, row);
+    estimate_cells(out, row, plan);
     html_cell(out, "td class=\"word\"", "%s%s%s", row->test, row->test[0] && row->note[0] ? "; " : "",
               row->note);
     p_cell(out, row->p_value);
@@ -93,7 +103,7 @@ static void planned_table(const struct report *r)
         fputs("</th></tr>\n", out);
         for (size_t i = 0; i < r->planned.row_count; i++)
             if (r->planned.rows[i].plan == plan)
-                planned_row(out, &r->planned.rows[i]);
+                planned_row(out, &r->planned.rows[i], &r->plans.items[plan]);
         fputs("</tbody>\n", out);
     }
     fputs("</table></div>\n", out);

@@ -57,7 +57,7 @@ struct report {
     struct adjusted adjusted;
     struct jod jod;
     struct report_tests all, stricter; // without any exclusion; with those of the set 'stricter' too
-    struct figure_pair choices_figure, frames_figure, ratings_figures[REPORT_QUESTIONS],
+    struct figure_pair choices_figure, three_figure, frames_figure, ratings_figures[REPORT_QUESTIONS],
         factorial_figures[REPORT_QUESTIONS], likert_figures[REPORT_QUESTIONS];
     struct bench bench; // without rows where no file was given
     struct figure_pair bench_figures[BENCH_SCENES];
