@@ -20,13 +20,13 @@ static const struct {
     [EFFECT_LAST] = {"last", "option shown last chosen",
                      "nobody answered with the test option last on screen and with the other one", "%", 100,
                      50},
-    [EFFECT_PLACE] = {"place", "test option chosen later less earlier in the session",
+    [EFFECT_PLACE] = {"place", "test option chosen later in the session minus earlier",
                       "nobody made two choices", "points", 100, 0},
     [EFFECT_REPETITION] = {"repetition", "same slot as before, beyond chance",
                            "nobody chose both slots in one sitting", "points", 100, 0},
-    [EFFECT_TOGGLES] = {"toggles", "switches before the test option less before the other",
+    [EFFECT_TOGGLES] = {"toggles", "switches before choosing the test option minus before the other",
                         "nobody who could switch chose both options", "switches", 1, 0},
-    [EFFECT_VIEWING] = {"viewing", "test option's share of viewing when chosen less when not",
+    [EFFECT_VIEWING] = {"viewing", "test option's share of viewing when chosen minus when not",
                         "nobody whose viewing time is known chose both options", "points", 100, 0},
 };
 

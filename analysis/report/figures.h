@@ -29,6 +29,11 @@ bool figure_choices(const struct choices *choices, const struct figure_desc *des
 // Whether the bars bear numbers, those of the table's rows: words are missing, or do not fit.
 bool figure_choices_numbered(const struct choices *choices);
 
+// Stengel 2016, Figure 7: net preferences of cells with three kinds of answers, with their intervals.
+bool figure_three(const struct choices *choices, const struct figure_desc *desc, char **out_svg, char *error,
+                  size_t error_size);
+size_t figure_three_rows(const struct choices *choices); // 0 where there is nothing to draw
+
 // Each person's two ratings as a line, in two panels by what came first, with the means.
 bool figure_ratings(const struct sample *sample, const struct rating_question *question,
                     const struct figure_desc *desc, char **out_svg, char *error, size_t error_size);

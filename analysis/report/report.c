@@ -110,6 +110,22 @@ static bool draw_choices(struct report *r, char *error, size_t error_size)
     return true;
 }
 
+static bool draw_three(struct report *r, char *error, size_t error_size)
+{
+    for (int narrow = 0; figure_three_rows(&r->choices) && narrow < 2; narrow++) {
+        struct figure_text text = {
+            narrow ? "three-n" : "three-w", "Net preference per cell",
+            "A dot and an interval per cell, negative where the reference was preferred; "
+            "the table below has every number.",
+            narrow ? "narrow" : "wide"};
+        struct figure_desc desc = {narrow, &text};
+        char **svg = narrow ? &r->three_figure.narrow : &r->three_figure.wide;
+        if (!figure_three(&r->choices, &desc, svg, error, error_size))
+            return false;
+    }
+    return true;
+}
+
 static bool draw_ratings(struct report *r, char *error, size_t error_size)
 {
     for (size_t i = 0; i < r->ratings.question_count && i < REPORT_QUESTIONS; i++)
@@ -260,11 +276,17 @@ static bool load_thresholds(struct report *r, char *error, size_t error_size)
            jod_load(&r->jod, r->sample, r->conf, JOD_REPLICATES, JOD_SEED, error, error_size);
 }
 
+static bool load_planned(struct report *r, char *error, size_t error_size)
+{
+    const struct planned_sources sources = {&r->ratings, &r->thresholds, &r->adjusted};
+    return planned_load(&r->planned, r->sample, &r->plans, &sources, r->conf, error, error_size);
+}
+
 static bool load(struct report *r, char *error, size_t error_size)
 {
     if (!choices_load(&r->choices, r->sample, r->conf, error, error_size))
         return false;
-    if (!choice_factors_load(&r->factors, &r->choices)) {
+    if (!plans_load(&r->plans, r->sample) || !choice_factors_load(&r->factors, &r->choices)) {
         snprintf(error, error_size, "not enough memory");
         return false;
     }
@@ -272,6 +294,7 @@ static bool load(struct report *r, char *error, size_t error_size)
            checks_load(&r->checks, r->sample, r->conf, error, error_size) &&
            effects_load(&r->effects, r->sample, r->conf, error, error_size) &&
            report_load_frames(r, error, error_size) && load_thresholds(r, error, error_size) &&
+           load_planned(r, error, error_size) &&
            (r->sample->exclusion_count == 0 ||
             (load_tests(&r->all, r, SAMPLE_ALL_DATA, error, error_size) &&
              load_tests(&r->stricter, r, SAMPLE_STRICTER, error, error_size)));
@@ -289,6 +312,8 @@ static void free_figures(struct report *r)
 {
     free(r->choices_figure.wide);
     free(r->choices_figure.narrow);
+    free(r->three_figure.wide);
+    free(r->three_figure.narrow);
     free(r->frames_figure.wide);
     free(r->frames_figure.narrow);
     free(r->adjusted_figure.wide);
@@ -332,6 +357,7 @@ static bool write_figures(const struct report *r, struct figure_files *files, ch
         const struct figure_pair *pairs;
         size_t count; // 0: one, without a number
     } all[] = {{"choices", &r->choices_figure, 0},
+               {"net_preference", &r->three_figure, 0},
                {"ratings_before_after", r->ratings_figures, REPORT_QUESTIONS},
                {"ratings_means", r->factorial_figures, REPORT_QUESTIONS},
                {"ratings_answers", r->likert_figures, REPORT_QUESTIONS},
@@ -364,13 +390,16 @@ bool report_write_with_figures(struct sample *sample, double conf, const char *p
         snprintf(error, error_size, "not enough memory");
     ok = ok && (!bench || bench_load(&r.bench, bench, error, error_size)) && load(&r, error, error_size) &&
          report_draw_bench(&r, error, error_size) && draw_choices(&r, error, error_size) &&
-         draw_ratings(&r, error, error_size) && draw_factorials(&r, error, error_size) &&
-         draw_frames(&r, error, error_size) && draw_thresholds(&r, error, error_size) &&
-         draw_adjusted(&r, error, error_size) && write_to(&r, path, temporary, error, error_size) &&
+         draw_three(&r, error, error_size) && draw_ratings(&r, error, error_size) &&
+         draw_factorials(&r, error, error_size) && draw_frames(&r, error, error_size) &&
+         draw_thresholds(&r, error, error_size) && draw_adjusted(&r, error, error_size) &&
+         write_to(&r, path, temporary, error, error_size) &&
          (!files || write_figures(&r, files, error, error_size));
     free_figures(&r);
     choice_factors_free(&r.factors);
     choices_free(&r.choices);
+    plans_free(&r.plans);
+    planned_free(&r.planned);
     ratings_free(&r.ratings);
     frames_free(&r.frames);
     frames_pairs_free(&r.frames_pairs);

@@ -39,6 +39,12 @@ void report_choice_three(const struct report *r)
 {
     const struct choices *c = &r->choices;
     bool any = false;
+    report_figure(
+        r, &r->three_figure,
+        "Net preference per cell: the mean over people of answers for the test option minus those for the "
+        "reference, over all answers, with its t interval; \u201cequal\u201d counts 0. Negative: the "
+        "reference was preferred (as in Stengel et al. 2016, Figure 7). Intervals are drawn no further "
+        "than \u22121 and 1; the table has them whole.");
     for (size_t i = 0; i < c->cell_count; i++) {
         if (!choice_three_applies(c, &c->cells[i]))
             continue;

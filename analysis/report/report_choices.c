@@ -231,6 +231,7 @@ void report_choices(const struct report *r)
     report_figure(r, &r->choices_figure, caption);
     choices_table(r);
     choices_notes(r);
+    report_equivalence(r);
     report_people(r);
     report_choice_factors(r);
     report_choice_three(r);

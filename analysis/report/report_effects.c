@@ -46,26 +46,40 @@ static void effect_row(const struct report *r, enum effect_check check)
     fputs("</tr>\n", out);
 }
 
-// Tests that these few people could not make clear, and whom a check leaves out.
+static bool is_dull(const struct report *r, const struct effect *e)
+{
+    return e->people > 1 && e->flip.uneven > 0 && e->exact && e->flip.least_p > 1 - r->conf;
+}
+
+// Tests that these few people could not make clear, and whom checks leave out.
 static void effect_notes(const struct report *r)
 {
+    size_t dull = 0, partial = 0;
+    bool any = false;
     for (int i = 0; i < EFFECT_CHECKS; i++) {
         const struct effect *e = &r->effects.checks[i];
-        const char *words = effect_words((enum effect_check)i);
-        bool dull = e->people > 1 && e->flip.uneven > 0 && e->exact && e->flip.least_p > 1 - r->conf,
-             partial = e->people && e->left_out;
-        if (!dull && !partial)
-            continue;
-        fputs("<p class=\"note\">", r->out);
-        html_printf(r->out, "\u201c%s\u201d: ", words);
-        if (dull)
-            html_printf(r->out, "cannot reach %.4g, for the smallest p of these people\u2019s values is %.3g. ",
-                        1 - r->conf, e->flip.least_p);
-        if (partial)
-            html_printf(r->out, "%zu %s no such value.", e->left_out,
-                        e->left_out == 1 ? "person has" : "people have");
-        fputs("</p>\n", r->out);
+        any = any || is_dull(r, e) || (e->people && e->left_out);
     }
+    if (!any)
+        return;
+    fputs("<p class=\"note\">", r->out);
+    for (int i = 0; i < EFFECT_CHECKS; i++) {
+        const struct effect *e = &r->effects.checks[i];
+        if (is_dull(r, e)) {
+            if (dull++ == 0)
+                html_printf(r->out, "Cannot reach %.4g, with the smallest possible p: ", 1 - r->conf);
+            html_printf(r->out, "%s%s (%.3g)", dull > 1 ? "; " : "", effect_words((enum effect_check)i),
+                        e->flip.least_p);
+        }
+    }
+    fputs(dull ? ". " : "", r->out);
+    for (int i = 0; i < EFFECT_CHECKS; i++) {
+        const struct effect *e = &r->effects.checks[i];
+        if (e->people && e->left_out)
+            html_printf(r->out, "%s%s (%zu)", partial++ ? "; " : "People without a value, left out: ",
+                        effect_words((enum effect_check)i), e->left_out);
+    }
+    fputs(partial ? ".</p>\n" : "</p>\n", r->out);
 }
 
 void report_effects(const struct report *r)
@@ -78,10 +92,16 @@ void report_effects(const struct report *r)
     html_printf(
         out,
         "Each person gives one value per check, which a preference does not move; people are tested, never "
-        "pooled answers: by the exact sign-flip test, for more than %d people by Student\u2019s t. p (Holm) "
-        "is adjusted for the family of these %zu checks. A large p does not show that there is no effect. "
-        "What was on screen last or longest may be so because it was preferred.",
-        STAT_FLIP_VALUES, r->effects.tested);
+        "pooled answers: by the exact sign-flip test, for more than %d people by Student\u2019s t. ",
+        STAT_FLIP_VALUES);
+    if (r->effects.tested == 0)
+        fputs("These data permit none of the tests. ", out);
+    else
+        html_printf(out,
+                    "p (Holm) is adjusted for the family of the %zu %s. A large p does not show that there is "
+                    "no effect. ",
+                    r->effects.tested, r->effects.tested == 1 ? "check that has a p" : "checks that have a p");
+    fputs("What was on screen last or longest may be so because it was preferred.", out);
     fputs(
         "</p>\n<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"Effects on choices that are no "
         "preference\"><table class=\"wrap\">\n<caption>",

@@ -1,126 +1,134 @@
-// What was planned before the first participant, each with the section that answers it. What no section answers
-// is said, so that a planned test is never silently missing.
+// What was planned before the first participant, each with its result. What cannot be computed says why, so
+// that a planned test is never silently missing.
 #include "analysis/report/html.h"
 #include "analysis/report/sections.h"
 
+#include <math.h>
 #include <string.h>
 
-static const struct {
-    const char *plan, *section; // as store_session_row has plans
-} answers[] = {
-    {"binomial choice cell", "Choices"},
-    {"mean toggles study", "Toggles before answering"},
-    {"unpaired_t rating order", "Ratings"},
-    {"paired_t rating order", "Ratings"},
-    {"paired_t rating cell", "Ratings"},
-    {"anova rating factor", "Ratings"},
-    {"paired_t rating factor", "Ratings"},
-    {"mean rating factor", "Ratings"},
-    {"mean adjusted cell", "Adjusted values"},
-    {"mean threshold cell", "Thresholds"},
-    {"binomial choice -", "Choices"},
-    {"mean choice cell", "Choices"},
-    {"mean toggles cell", "Toggles before answering"},
-};
-
-// Planned, and answered otherwise or not at all: why.
-static const struct {
-    const char *plan, *why;
-} reasons[] = {
-    {"anova rating cell",
-     "an analysis of variance compares levels of factors; it stands in section \u201cRatings\u201d"},
-    {"binomial choice study",
-     "a person\u2019s cells are never joined; each cell is tested in section \u201cChoices\u201d"},
-    {"binomial choice scene",
-     "a person\u2019s cells are never joined; each cell is tested in section \u201cChoices\u201d"},
-};
-
-// Answered by the comparison of levels, if there is one: which needs cells that differ in one factor alone.
-static const char *levels_answer(const struct report *r, const char *plan)
-{
-    if (strcmp(plan, "binomial choice factor") != 0 && strcmp(plan, "paired_t choice factor") != 0)
-        return NULL;
-    return r->factors.count + r->choices.contrast_count
-               ? "levels of factors are compared in section \u201cChoices\u201d, by the test that the data "
-                 "permit"
-               : "no two cells differ in one factor alone, so no levels are compared; each cell is tested in "
-                 "section "
-                 "\u201cChoices\u201d";
-}
-
-static const char *reason_of(const struct report *r, const char *plan)
-{
-    for (size_t i = 0; i < sizeof reasons / sizeof reasons[0]; i++)
-        if (strcmp(reasons[i].plan, plan) == 0)
-            return reasons[i].why;
-    return levels_answer(r, plan);
-}
-
-static const char *answer_of(const char *plan)
-{
-    for (size_t i = 0; i < sizeof answers / sizeof answers[0]; i++)
-        if (strcmp(answers[i].plan, plan) == 0)
-            return answers[i].section;
-    return NULL;
-}
-
 // "paired_t rating order" as "paired t of rating, per order".
-static void write_plan(FILE *out, const char *plan)
+static void write_plan(FILE *out, const struct plan *plan)
 {
-    int word = 0;
-    for (const char *c = plan; *c; c++) {
-        if (*c == ' ' && strcmp(c, " -") == 0)
-            return;
-        if (*c == ' ')
-            fputs(word++ == 0 ? " of " : ", per ", out);
-        else
-            html_printf(out, "%c", *c == '_' ? ' ' : *c);
-    }
+    for (const char *c = plan->method; *c; c++)
+        html_printf(out, "%c", *c == '_' ? ' ' : *c);
+    html_printf(out, " of %s", plan->of);
+    if (strcmp(plan->per, "-") != 0)
+        html_printf(out, ", per %s", plan->per);
+    if (!isnan(plan->margin))
+        html_printf(out, ", margin %.4g\u00a0%%", 100 * plan->margin);
 }
 
-// Whether a session before this one has the line.
-static bool known_before(const struct sample *sample, size_t session, const char *line)
+// Thresholds and adjusted values may be of any size; ratings, toggles and seconds are not.
+static void number(const struct planned_row *row, const struct plan *plan, double value, char out[32])
 {
-    for (size_t i = 0; i < session; i++) {
-        char lines[2048];
-        snprintf(lines, sizeof lines, "%s", sample->sessions[i].planned);
-        for (char *rest = lines, *one; !sample->sessions[i].excluded && (one = strsep(&rest, "\n"));)
-            if (strcmp(one, line) == 0)
-                return true;
-    }
-    return false;
+    bool any_size = plan_is(plan, NULL, "threshold", NULL) || plan_is(plan, NULL, "adjusted", NULL);
+    if (row->share)
+        snprintf(out, 32, "%.1f", 100 * value);
+    else
+        snprintf(out, 32, any_size ? "%.4g" : "%.2f", value);
 }
 
-static size_t write_session(const struct report *r, size_t session, size_t count)
+static void estimate_cells(FILE *out, const struct planned_row *row, const struct plan *plan)
 {
-    char lines[2048]; // 16 plans of three words
-    snprintf(lines, sizeof lines, "%s", r->sample->sessions[session].planned);
-    for (char *rest = lines, *line; (line = strsep(&rest, "\n"));) {
-        if (!*line || known_before(r->sample, session, line))
-            continue;
-        const char *section = answer_of(line);
-        fputs(count++ ? "" : "<ul>\n", r->out);
-        fputs("<li>", r->out);
-        write_plan(r->out, line);
-        if (section)
-            fprintf(r->out, ": section \u201c%s\u201d</li>\n", section);
-        else if (reason_of(r, line))
-            fprintf(r->out, ": %s</li>\n", reason_of(r, line));
-        else
-            fputs(": <strong>not computed by this version</strong></li>\n", r->out);
+    char estimate[32], low[32], high[32];
+    const char *unit = row->share ? "%" : row->unit;
+    number(row, plan, row->estimate, estimate);
+    number(row, plan, row->low, low);
+    number(row, plan, row->high, high);
+    if (isnan(row->estimate))
+        html_cell(out, "td", "\u2013");
+    else if (row->effect_size)
+        html_cell(out, "td", "\u03b7\u00b2\u209a %.3f", row->estimate);
+    else
+        html_cell(out, "td", "%s%s%s", estimate, unit[0] ? "\u00a0" : "", unit);
+    if (isnan(row->low))
+        html_cell(out, "td", "\u2013");
+    else
+        html_cell(out, "td", "%s to %s", low, high);
+}
+
+static void p_cell(FILE *out, double value)
+{
+    char p[24];
+    html_p_value(p, value);
+    html_cell(out, "td", "%s", isnan(value) ? "\u2013" : p);
+}
+
+static void planned_row(FILE *out, const struct planned_row *row, const struct plan *plan)
+{
+    fputs("<tr>", out);
+    html_cell(out, "th scope=\"row\" class=\"word\"", "%s", row->words[0] ? row->words : "all");
+    if (row->people == 0) {
+        html_cell(out, "td colspan=\"6\" class=\"word\"", "%s",
+                  row->note[0] ? row->note : "not estimable: nobody has a value");
+        fputs("</tr>\n", out);
+        return;
     }
-    return count;
+    html_cell(out, "td", "%zu", row->people);
+    estimate_cells(out, row, plan);
+    html_cell(out, "td class=\"word\"", "%s%s%s", row->test, row->test[0] && row->note[0] ? "; " : "",
+              row->note);
+    p_cell(out, row->p_value);
+    p_cell(out, row->holm);
+    fputs("</tr>\n", out);
+}
+
+static void partial_note(const struct report *r)
+{
+    size_t most = 0;
+    for (size_t i = 0; i < r->planned.row_count; i++)
+        most = r->planned.rows[i].partial > most ? r->planned.rows[i].partial : most;
+    if (most)
+        html_printf(
+            r->out,
+            " In some rows people (up to %zu) lack cells that others have; their value is over those that "
+            "they have, nothing is filled.",
+            most);
+}
+
+static void planned_table(const struct report *r)
+{
+    FILE *out = r->out;
+    fprintf(out,
+            "<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"Planned analyses\"><table "
+            "class=\"wrap\">\n<caption>What the protocol planned, and its results</caption>\n<thead><tr><th "
+            "scope=\"col\" class=\"word\">planned</th><th scope=\"col\">people</th><th "
+            "scope=\"col\">estimate</th><th scope=\"col\">%g&nbsp;%% interval</th><th scope=\"col\" "
+            "class=\"word\">test</th><th scope=\"col\">p</th><th scope=\"col\">p "
+            "(Holm)</th></tr></thead>\n",
+            100 * r->conf);
+    for (size_t plan = 0; plan < r->plans.count; plan++) {
+        fputs("<tbody>\n<tr><th scope=\"rowgroup\" colspan=\"7\" class=\"word\">", out);
+        write_plan(out, &r->plans.items[plan]);
+        fputs("</th></tr>\n", out);
+        for (size_t i = 0; i < r->planned.row_count; i++)
+            if (r->planned.rows[i].plan == plan)
+                planned_row(out, &r->planned.rows[i], &r->plans.items[plan]);
+        fputs("</tbody>\n", out);
+    }
+    fputs("</table></div>\n", out);
 }
 
 void report_planned(const struct report *r)
 {
-    size_t count = 0;
+    FILE *out = r->out;
     report_heading(r, "Planned analyses");
-    for (size_t i = 0; i < r->sample->session_count; i++)
-        if (!r->sample->sessions[i].excluded)
-            count = write_session(r, i, count);
-    fputs(count ? "</ul>\n<p>They stand in the sections named; everything else in this report was not "
-                  "planned.</p>\n"
-                : "<p>The protocol planned none, or an earlier version recorded the sessions.</p>\n",
-          r->out);
+    if (r->plans.count == 0) {
+        fputs("<p>The protocol planned none, or an earlier version recorded the sessions.</p>\n", out);
+        return;
+    }
+    planned_table(r);
+    fputs("<p>A person\u2019s answers in a cell are averaged, then the cells of a row, so that each person "
+          "counts "
+          "the same; shares of choices are tested as in section \u201cChoices\u201d, joined over cells only "
+          "where the protocol planned it. Levels are compared in what is otherwise the same. ",
+          out);
+    if (r->planned.tested)
+        html_printf(out, "p (Holm) is adjusted for the %zu %s of this table, the planned family. ",
+                    r->planned.tested, r->planned.tested == 1 ? "test" : "tests");
+    fputs("A large p does not show that there is no difference. Everything else in this report was not "
+          "planned.",
+          out);
+    partial_note(r);
+    fputs("</p>\n", out);
 }

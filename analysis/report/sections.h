@@ -13,6 +13,8 @@
 #include "analysis/report/frames_pairs.h"
 #include "analysis/report/gaze_over.h"
 #include "analysis/report/jod.h"
+#include "analysis/report/planned.h"
+#include "analysis/report/plans.h"
 #include "analysis/report/ratings.h"
 #include "analysis/report/sample.h"
 #include "analysis/report/thresholds.h"
@@ -39,6 +41,8 @@ struct report {
     FILE *out;
     struct sample *sample;
     double conf;
+    struct plans plans;
+    struct planned planned;
     struct choices choices;
     struct choice_factors factors;
     struct ratings ratings;
@@ -53,7 +57,7 @@ struct report {
     struct adjusted adjusted;
     struct jod jod;
     struct report_tests all, stricter; // without any exclusion; with those of the set 'stricter' too
-    struct figure_pair choices_figure, frames_figure, ratings_figures[REPORT_QUESTIONS],
+    struct figure_pair choices_figure, three_figure, frames_figure, ratings_figures[REPORT_QUESTIONS],
         factorial_figures[REPORT_QUESTIONS], likert_figures[REPORT_QUESTIONS];
     struct bench bench; // without rows where no file was given
     struct figure_pair bench_figures[BENCH_SCENES];
@@ -63,9 +67,10 @@ struct report {
 void report_summary(const struct report *r);
 void report_sample(const struct report *r);
 void report_methods(const struct report *r);
-void report_planned(const struct report *r);         // what the protocol planned, and where it is answered
+void report_planned(const struct report *r);         // what the protocol planned, with its results
 void report_choices_methods(const struct report *r); // sentences
 void report_choices(const struct report *r);
+void report_equivalence(const struct report *r);    // by the protocol's margin
 void report_choice_three(const struct report *r);   // where "equal" was an answer
 void report_choice_factors(const struct report *r); // levels compared, where people did not answer several
 void report_people(const struct report *r);         // cells with several answers per person

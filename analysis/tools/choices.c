@@ -1,4 +1,5 @@
 #include "analysis/report/choices.h"
+#include "analysis/report/plans.h"
 
 #include "analysis/tools/arguments.h"
 #include "analysis/tools/binomial_json.h"
@@ -25,6 +26,9 @@ static const char help[] =
     "  --p P            the preference under the null hypothesis (0.5)\n"
     "  --alternative A  two-sided, less or greater\n"
     "  --conf C         confidence of intervals and null regions (0.95)\n"
+    "  --margin M       tests whether the preference lies within P - M to P + M, by two one-sided tests; by "
+    "default\n"
+    "                   the margin that the protocol planned, about one half\n"
     "  --simulated      analyse simulated sessions, which are left out otherwise\n"
     "  --protocol N     analyse the sessions of this protocol; else of the one with most sessions\n"
     "  --json           one object with the cells in an array\n"
@@ -46,7 +50,8 @@ static const char help[] =
 struct parts {
     struct choice_factors factors;
     struct effects effects;
-    double margin; // of equivalence; NaN: none was given
+    double margin;           // of equivalence; NaN: none was given or planned
+    const char *margin_note; // where it comes from, or why there is none; NULL: nothing to say
 };
 
 static const char *const alternatives[] = {"two-sided", "less", "greater"};
@@ -122,8 +127,10 @@ static bool print_text(const struct sample *sample, const struct choices *c, con
             printf("%s: %" PRId64 " answers \"equal\" are not part of n.\n", c->cells[i].label,
                    c->cells[i].equal);
     ok = ok && (!c->several || choices_people_print(c)) && choices_factors_print(&parts->factors) &&
-         choices_three_print(c) && (isnan(parts->margin) || choices_equivalence_print(c, parts->margin)) &&
-         choices_effects_print(&parts->effects);
+         choices_three_print(c) && (isnan(parts->margin) || choices_equivalence_print(c, parts->margin));
+    if (parts->margin_note)
+        puts(parts->margin_note);
+    ok = ok && choices_effects_print(&parts->effects);
     print_notes(sample, c);
     return ok;
 }
@@ -229,6 +236,31 @@ static int check_margin(const struct command *command, double margin, double p0,
     return -1;
 }
 
+// What the protocol fixed, where no margin was typed. False where memory ran out.
+static bool planned_margin(struct parts *parts, struct sample *sample, const struct choices_desc *desc)
+{
+    struct plans plans;
+    bool differ;
+    if (!isnan(parts->margin))
+        return true;
+    if (!plans_load(&plans, sample))
+        return false;
+    double margin = plans_margin(&plans, &differ);
+    plans_free(&plans);
+    if (differ) {
+        parts->margin_note =
+            "The sessions' protocols plan different margins of equivalence; --margin tests one.";
+    } else if (!isnan(margin) && desc->p0 == 0.5 && desc->conf > 0.5) {
+        parts->margin = margin;
+        parts->margin_note = "The margin is the protocol's.";
+    } else if (!isnan(margin)) {
+        parts->margin_note =
+            "The protocol's margin of equivalence is about one half and for a --conf above 0.5; "
+            "it is not used here.";
+    }
+    return true;
+}
+
 static int run(const struct command *command, int argc, char **argv)
 {
     struct study_arguments arguments;
@@ -259,7 +291,7 @@ static int run(const struct command *command, int argc, char **argv)
     } else if (c.cell_count == 0) {
         code = command_fail(command, EXIT_FAILED, "%s: no choice was recorded that counts",
                             store_reader_path(sample.files[0]));
-    } else if (!choice_factors_load(&parts.factors, &c)) {
+    } else if (!planned_margin(&parts, &sample, &desc) || !choice_factors_load(&parts.factors, &c)) {
         code = command_fail(command, EXIT_FAILED, "not enough memory");
     } else if (!effects_load(&parts.effects, &sample, desc.conf, error, sizeof error)) {
         code = command_fail(command, EXIT_FAILED, "%s", error);

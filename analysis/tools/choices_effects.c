@@ -30,24 +30,60 @@ static void effect_row(struct table *t, enum effect_check check, const struct ef
     choices_p_cell(t, e->holm);
 }
 
-static void print_notes(const struct effects *effects)
+enum note { NOT_ESTIMABLE, ONE_PERSON, ALL_ZERO, OUT_OF_REACH, INCOMPLETE };
+
+static bool holds(const struct effect *e, enum note note, double conf)
 {
+    switch (note) {
+    case NOT_ESTIMABLE:
+        return e->people == 0;
+    case ONE_PERSON:
+        return e->people == 1;
+    case ALL_ZERO:
+        return e->people > 1 && e->flip.uneven == 0;
+    case OUT_OF_REACH:
+        return e->people > 1 && e->flip.uneven > 0 && e->exact && e->flip.least_p > 1 - conf;
+    default:
+        return e->people && e->left_out;
+    }
+}
+
+static void print_detail(const struct effect *e, enum effect_check check, enum note note)
+{
+    if (note == NOT_ESTIMABLE)
+        printf(" (%s)", effect_null(check));
+    else if (note == OUT_OF_REACH)
+        printf(" (%.3g)", e->flip.least_p);
+    else if (note == INCOMPLETE)
+        printf(" (%zu)", e->left_out);
+}
+
+// One line for all checks of which it holds.
+static void print_note(const struct effects *effects, enum note note, const char *heading)
+{
+    bool first = true;
     for (int i = 0; i < EFFECT_CHECKS; i++) {
         const struct effect *e = &effects->checks[i];
-        const char *words = effect_words((enum effect_check)i);
-        if (e->people == 0)
-            printf("Not estimable, %s: %s.\n", words, effect_null((enum effect_check)i));
-        else if (e->people == 1)
-            printf("Not tested, %s: only one person has a value.\n", words);
-        else if (e->flip.uneven == 0)
-            printf("Not tested, %s: every person's value is 0.\n", words);
-        else if (e->exact && e->flip.least_p > 1 - effects->conf)
-            printf("Cannot reach %.4g, %s: the smallest p that these people's values could give is %.3g.\n",
-                   1 - effects->conf, words, e->flip.least_p);
-        if (e->people && e->left_out)
-            printf("Without a value, %s: %zu %s.\n", words, e->left_out,
-                   e->left_out == 1 ? "person" : "people");
+        if (!holds(e, note, effects->conf))
+            continue;
+        printf("%s%s", first ? heading : "; ", effect_words((enum effect_check)i));
+        print_detail(e, (enum effect_check)i, note);
+        first = false;
     }
+    if (!first)
+        puts(".");
+}
+
+static void print_notes(const struct effects *effects)
+{
+    char reach[96];
+    snprintf(reach, sizeof reach,
+             "Cannot reach %.4g (the smallest p that these people's values could give): ", 1 - effects->conf);
+    print_note(effects, NOT_ESTIMABLE, "Not estimable: ");
+    print_note(effects, ONE_PERSON, "Not tested, only one person has a value: ");
+    print_note(effects, ALL_ZERO, "Not tested, every person's value is 0: ");
+    print_note(effects, OUT_OF_REACH, reach);
+    print_note(effects, INCOMPLETE, "People without a value, left out: ");
 }
 
 bool choices_effects_print(const struct effects *effects)
@@ -63,11 +99,14 @@ bool choices_effects_print(const struct effects *effects)
     puts("\nEffects on choices that are no preference: one value per person, tested over people, two-sided");
     bool ok = table_print(&t, stdout);
     table_finish(&t);
-    printf(
-        "Holm p: adjusted for this family of %zu %s. d: mean over the SD of the people's values. Where p is "
-        "large, an effect is\nnot shown; nor is it shown to be absent. What was on screen last or longest may "
-        "be so because it was preferred.\n",
-        effects->tested, effects->tested == 1 ? "check" : "checks");
+    if (effects->tested == 0)
+        puts("These data permit none of the tests.");
+    else
+        printf(
+            "Holm p: adjusted for the family of the %zu %s. d: mean over the SD of the people's values. Where "
+            "p is large, an effect\nis not shown; nor is it shown to be absent. ",
+            effects->tested, effects->tested == 1 ? "check that has a p" : "checks that have a p");
+    puts("What was on screen last or longest may be so because it was preferred.");
     print_notes(effects);
     return ok;
 }

@@ -1,33 +1,7 @@
 #include "analysis/tools/choices_equivalence.h"
 
-#include "analysis/stats/people_equivalence.h"
+#include "analysis/report/choice_equivalence.h"
 #include "analysis/tools/choices_people.h"
-
-#include <math.h>
-
-static struct stat_equivalence test(const struct choices *c, const struct choice_cell *cell, double margin)
-{
-    const double alpha = 1 - c->conf;
-    if (cell->several)
-        return stat_people_equivalence(cell->counts, cell->people, c->p0, margin, alpha);
-    if (cell->n == 0)
-        return stat_people_equivalence(NULL, 0, c->p0, margin, alpha);
-    return stat_binomial_equivalence(cell->chosen, cell->n, c->p0, margin, alpha);
-}
-
-static const char *words(const struct choice_cell *cell, const struct stat_equivalence *e, double alpha)
-{
-    static const char *const verdicts[] = {[STAT_UNDECIDED] = "neither is shown",
-                                           [STAT_DIFFERENT] = "a difference is shown",
-                                           [STAT_WITHIN] = "equality within the margin is shown",
-                                           [STAT_DIFFERENT_WITHIN] = "a difference within the margin is shown"};
-    return isnan(e->p_value) ? "not estimable" : verdicts[stat_verdict(cell->p_value, e->p_value, alpha)];
-}
-
-static const char *method(const struct choice_cell *cell)
-{
-    return cell->n == 0 ? "" : cell->several ? "t of people's shares" : "exact binomial";
-}
 
 bool choices_equivalence_print(const struct choices *c, double margin)
 {
@@ -40,15 +14,15 @@ bool choices_equivalence_print(const struct choices *c, double margin)
     table_init(&t, headings);
     for (size_t i = 0; i < c->cell_count; i++) {
         const struct choice_cell *cell = &c->cells[i];
-        struct stat_equivalence e = test(c, cell, margin);
+        struct stat_equivalence e = choice_equivalence(c, cell, margin);
         table_cell(&t, "%s", cell->block);
         table_cell(&t, "%s", cell->label);
-        table_cell(&t, "%s", method(cell));
+        table_cell(&t, "%s", choice_equivalence_method(cell));
         choices_p_cell(&t, e.p_low);
         choices_p_cell(&t, e.p_high);
         choices_p_cell(&t, e.p_value);
         choices_range_cell(&t, e.ci);
-        table_cell(&t, "%s", words(cell, &e, alpha));
+        table_cell(&t, "%s", choice_equivalence_words(cell->p_value, &e, alpha));
     }
     printf("\nEquivalence: is the preference within %.4g to %.4g?\n", c->p0 - margin, c->p0 + margin);
     bool ok = table_print(&t, stdout);
@@ -63,18 +37,18 @@ void choices_equivalence_json(struct json *json, const struct choices *c, double
     json_open(json, "equivalence", '[');
     for (size_t i = 0; i < c->cell_count; i++) {
         const struct choice_cell *cell = &c->cells[i];
-        struct stat_equivalence e = test(c, cell, margin);
+        struct stat_equivalence e = choice_equivalence(c, cell, margin);
         json_open(json, NULL, '{');
         json_text(json, "block", cell->block);
         json_text(json, "cell", cell->label);
         json_number(json, "margin", margin);
-        json_text(json, "method", method(cell));
+        json_text(json, "method", choice_equivalence_method(cell));
         json_number(json, "p_low", e.p_low);
         json_number(json, "p_high", e.p_high);
         json_number(json, "p_value", e.p_value);
         json_number(json, "ci_low", e.ci.low);
         json_number(json, "ci_high", e.ci.high);
-        json_text(json, "shown", words(cell, &e, 1 - c->conf));
+        json_text(json, "shown", choice_equivalence_words(cell->p_value, &e, 1 - c->conf));
         json_close(json, '}');
     }
     json_close(json, ']');

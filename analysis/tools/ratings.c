@@ -19,6 +19,9 @@ static const char help[] =
     "Ratings over crossed factors: analysis of variance within participants, with Greenhouse-Geisser's and\n"
     "Huynh-Feldt's corrections, means of levels, and paired tests of levels where a factor's corrected p is\n"
     "small, adjusted after Holm. People who lack a cell are named and left out.\n"
+    "Hodges and Lehmann's estimate and its interval keep differences of 0, which the signed-rank test's p "
+    "drops\n"
+    "(or only ranks, with --pratt): where there are some, the interval may reach 0 though p is small.\n"
     "  --conf C     confidence of the intervals (0.95)\n"
     "  --pratt      signed-rank tests rank differences of 0 before they drop them (Pratt 1959), else drop them "
     "first\n"
@@ -59,6 +62,7 @@ static bool print_ranks(const struct sample *sample, const struct rating_questio
         if (!q->groups[i].rank.exact)
             printf("Wilcoxon's p of %s first is by the normal approximation.\n",
                    label(sample, q->groups[i].first_condition));
+    puts("Wilcoxon's p drops differences of 0; Hodges and Lehmann's estimate and interval keep them.");
     return ok;
 }
 

@@ -108,8 +108,11 @@ static char *settings_json(const struct run_options *options, const struct run_s
     fprintf(out, "},\"planned\":[");
     for (uint32_t i = 0; i < study->protocol->analysis_count; i++) {
         const struct protocol_analysis *planned = &study->protocol->analyses[i];
-        fprintf(out, "%s{\"method\":\"%s\",\"of\":\"%s\",\"per\":\"%s\"}", i ? "," : "", planned->method,
+        fprintf(out, "%s{\"method\":\"%s\",\"of\":\"%s\",\"per\":\"%s\"", i ? "," : "", planned->method,
                 planned->of, *planned->per ? planned->per : "-");
+        if (planned->margin > 0)
+            fprintf(out, ",\"margin\":%.15g", planned->margin);
+        fprintf(out, "}");
     }
     fprintf(out, "]}");
     return fclose(out) == 0 ? text : NULL;

@@ -189,6 +189,12 @@ static const struct language_key analysis_keys[] = {
      .about = "What is analysed.", .example = "of: choice"},
     {"per", LANGUAGE_WORD, false, .words = WORDS("cell", "factor", "order", "scene", "study"),
      .about = "Split by.", .example = "per: cell"},
+    {"margin", LANGUAGE_NUMBER, false, 0, 0.5,
+     .about =
+         "Of a binomial test of choices: how far from one half, as a share of choices and neither 0 nor "
+         "0.5, a preference may lie and the options still count as equal; two one-sided tests say whether it "
+         "does.",
+     .example = "margin: 0.15"},
     {0},
 };
 

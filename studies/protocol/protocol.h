@@ -240,6 +240,7 @@ struct protocol_analysis {
     char method[PROTOCOL_NAME]; // binomial, paired_t, unpaired_t, mean
     char of[PROTOCOL_NAME];     // choice, rating, toggles, reaction
     char per[PROTOCOL_NAME];    // cell, study, order; "" where not given
+    double margin;              // of equivalence, share of choices in (0, 0.5); 0: none
 };
 
 struct protocol {

@@ -4,6 +4,23 @@
 #include <math.h>
 #include <string.h>
 
+// Only a share of choices has a margin; at 0 or one half there would be nothing to test.
+static bool margin_read(struct reader *reader, const struct yaml_node *map, struct protocol_analysis *analysis)
+{
+    const struct yaml_node *node = yaml_get(map, "margin");
+    if (!node)
+        return true;
+    if (strcmp(analysis->method, "binomial") != 0 || strcmp(analysis->of, "choice") != 0)
+        return read_fail_key(reader, node, "'margin' is for a binomial test of choices, not for %s of %s",
+                             analysis->method, analysis->of);
+    if (!key_number(reader, map, &language_analysis, "margin", &analysis->margin))
+        return false;
+    if (!(analysis->margin > 0 && analysis->margin < 0.5))
+        return read_fail(reader, node, "'margin' is %g but must lie between 0 and 0.5, and be neither",
+                         analysis->margin);
+    return true;
+}
+
 bool analysis_read(struct reader *reader, const struct yaml_node *root)
 {
     static const char *const keys[] = {"method", "of", "per"};
@@ -25,6 +42,8 @@ bool analysis_read(struct reader *reader, const struct yaml_node *root)
             if (yaml_get(node, keys[i]))
                 strcpy(into[i], language_find(&language_analysis, keys[i])->words[index]);
         }
+        if (!margin_read(reader, node, analysis))
+            return false;
     }
     return true;
 }

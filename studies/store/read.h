@@ -43,8 +43,8 @@ struct store_session_row {
     int64_t segments;
     const char *scenes; // the protocol's scenes and what was shown for them: "town: town:triangles=200000", ...
     const char *observer; // the simulated observer's parameters; "" for a person
-    // The planned analyses, a line each: "METHOD OF PER", PER "-" where there is none; "" where none was
-    // planned, or an earlier version recorded the session.
+    // The planned analyses, a line each: "METHOD OF PER", PER "-" where there is none, and " MARGIN" after it
+    // where the protocol has one; "" where none was planned, or an earlier version recorded the session.
     const char *planned;
     const char *title; // of the study; "" where an earlier version recorded the session
 };

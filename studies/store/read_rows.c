@@ -100,7 +100,9 @@ bool store_read_sessions(struct store_reader *reader, store_session_fn each, voi
         " coalesce((SELECT group_concat(key || ' ' || printf('%g', value), ', ')"
         "           FROM json_each(s.settings, '$.observer')), ''),"
         " coalesce((SELECT group_concat((value ->> '$.method') || ' ' || (value ->> '$.of') || ' ' ||"
-        "   (value ->> '$.per'), char(10)) FROM json_each(s.settings, '$.planned')), ''),"
+        "   (value ->> '$.per') || iif(value ->> '$.margin' IS NULL, '', printf(' %.15g', value ->> "
+        "'$.margin')),"
+        "   char(10)) FROM json_each(s.settings, '$.planned')), ''),"
         " coalesce(s.settings ->> '$.title', '')"
         " FROM session s JOIN participant p ON p.id = s.participant_id JOIN protocol o ON o.id = s.protocol_id"
         " ORDER BY s.id";

@@ -1,0 +1,49 @@
+// The results of what the protocol planned: a row per cell, level or pair of levels.
+//
+// People are the unit. A person's answers in a cell are averaged, then the cells of a row, and the test is over
+// people; choices of a row are summed per person and tested as a cell is (choices.h). Pairs of levels are
+// compared within people, in cells that are otherwise the same, or between people where nobody saw both. Holm's
+// p is over every row that has one: the planned family. What cannot be computed has a row that says why.
+#ifndef ANALYSIS_REPORT_PLANNED_H
+#define ANALYSIS_REPORT_PLANNED_H
+
+#include "analysis/report/adjusted.h"
+#include "analysis/report/plans.h"
+#include "analysis/report/ratings.h"
+#include "analysis/report/thresholds.h"
+
+enum { PLANNED_PAIRS = 200 }; // of one plan; more are a table that nobody reads
+
+struct planned_row {
+    size_t plan;                // index
+    char words[320];            // which cell, level or pair; "" where the plan has none
+    size_t people;              // with a value
+    size_t partial;             // of them, those that lack some of its cells
+    double estimate, low, high; // NaN where there is none
+    bool share, effect_size;    // the estimate is a share of choices; partial eta squared, without an interval
+    const char *unit;           // "" for none
+    char test[96];              // "exact binomial, 6 of 22", "t(21) = 2.10", "" for an estimate
+    double p_value, holm;       // NaN where nothing was tested
+    char note[256];             // why not, or what equivalence shows; "" for none
+};
+
+// Where values come from, beside the sample. Loaded, and borrowed for the call.
+struct planned_sources {
+    const struct ratings *ratings;
+    const struct thresholds *thresholds;
+    const struct adjusted *adjusted;
+};
+
+struct planned {
+    double conf;
+    size_t row_count;
+    struct planned_row *rows; // in the order of the plans
+    size_t tested;            // rows with a p
+};
+
+// False with a sentence.
+bool planned_load(struct planned *out, struct sample *sample, const struct plans *plans,
+                  const struct planned_sources *sources, double conf, char *error, size_t error_size);
+void planned_free(struct planned *planned);
+
+#endif

@@ -1,0 +1,67 @@
+// The values of one plan, per cell and person. Shared by planned*.c only.
+#ifndef ANALYSIS_REPORT_PLANNED_DATA_H
+#define ANALYSIS_REPORT_PLANNED_DATA_H
+
+#include "analysis/report/planned.h"
+
+struct planned_cell {
+    const char *series; // what must not be joined with others: a question, a parameter; "" where there is one
+    const char *block, *factors;
+    const char *scene;      // "" unless the plan is per scene
+    size_t test, reference; // conditions; SAMPLE_NONE where they do not tell cells apart
+    const char *words;
+    bool difference; // values are differences already, of a person's two ratings
+    double *sum;     // per person of the sample
+    int64_t *count;
+};
+
+struct planned_data {
+    struct sample *sample;
+    bool counts; // sum of count: answers for the test option, or right ones
+    const char *unit;
+    size_t cell_count;
+    struct planned_cell *cells;
+};
+
+bool planned_data_load(struct planned_data *out, struct sample *sample, const struct plan *plan,
+                       const struct planned_sources *sources, char *error, size_t error_size);
+void planned_data_free(struct planned_data *data);
+// Adds to the cell that is the same in all that comes before `sum`, which is made where it is new; texts are
+// copied. False where memory ran out.
+bool planned_data_add(struct planned_data *data, const struct planned_cell *like, size_t person, double value,
+                      int64_t count);
+// planned_read.c: what sections do not keep per person.
+bool planned_read_trials(struct planned_data *out, const struct plan *plan, char *error, size_t error_size);
+bool planned_read_ratings(struct planned_data *out, const struct plan *plan, char *error, size_t error_size);
+
+// The level of a factor in a cell, "scene" being its scene where the plan is per scene; NULL: none.
+const char *planned_level(const struct planned_data *data, const struct planned_cell *cell, const char *factor);
+
+// planned_groups.c: a row's cells.
+struct planned_group {
+    const char *series, *factor, *level; // factor NULL: cells or all of them
+    char words[320];
+    size_t *cells;
+    size_t cell_count;
+};
+
+struct planned_groups {
+    size_t count;
+    struct planned_group *items;
+};
+
+bool planned_groups_load(struct planned_groups *out, const struct planned_data *data, const struct plan *plan);
+void planned_groups_free(struct planned_groups *groups);
+
+// planned_pairs.c: rows of pairs of groups. Appends; false where memory ran out.
+bool planned_pairs(struct planned *out, const struct planned_data *data, const struct planned_groups *groups,
+                   const struct plan *plan, size_t index);
+// planned_anova.c
+bool planned_anova(struct planned *out, const struct planned_data *data, const struct plan *plan, size_t index,
+                   const struct planned_sources *sources);
+
+// An empty row at the end; NULL where memory ran out.
+struct planned_row *planned_row_add(struct planned *out, size_t plan);
+void planned_row_t(struct planned_row *row, const struct stat_ttest *t, const char *unit, bool tested);
+
+#endif

@@ -1,0 +1,73 @@
+// Whether the options count as equal in a cell, by the margin that the protocol fixed.
+#include "analysis/report/choice_equivalence.h"
+#include "analysis/report/html.h"
+#include "analysis/report/sections.h"
+
+#include <math.h>
+
+static void p_cell(FILE *out, double value)
+{
+    char p[24];
+    html_p_value(p, value);
+    html_cell(out, "td", "%s", isnan(value) ? "\u2013" : p);
+}
+
+static void equivalence_row(const struct report *r, const struct choice_cell *cell, double margin)
+{
+    FILE *out = r->out;
+    char words[256];
+    struct stat_equivalence e = choice_equivalence(&r->choices, cell, margin);
+    report_cell_words(cell, words);
+    fputs("<tr>", out);
+    html_cell(out, "th scope=\"row\" class=\"word\"", "%s", words);
+    html_cell(out, "td", "%zu", cell->people);
+    html_cell(out, "td class=\"word\"", "%s", choice_equivalence_method(cell));
+    if (isnan(e.ci.low))
+        html_cell(out, "td", "\u2013");
+    else
+        html_cell(out, "td", "%.1f to %.1f\u00a0%%", 100 * e.ci.low, 100 * e.ci.high);
+    p_cell(out, e.p_low);
+    p_cell(out, e.p_high);
+    p_cell(out, e.p_value);
+    html_cell(out, "td class=\"word\"", "%s", choice_equivalence_words(cell->p_value, &e, 1 - r->conf));
+    fputs("</tr>\n", out);
+}
+
+static void equivalence_table(const struct report *r, double margin)
+{
+    FILE *out = r->out;
+    fprintf(out,
+            "<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"Equivalence\"><table "
+            "class=\"wrap\">\n<caption>Equivalence: is the share of choices within %.4g to %.4g&nbsp;%%, the "
+            "protocol\u2019s margin?</caption>\n<thead><tr><th scope=\"col\" class=\"word\">cell</th><th "
+            "scope=\"col\">people</th><th scope=\"col\" class=\"word\">two one-sided tests</th><th "
+            "scope=\"col\">%.4g&nbsp;%% interval</th><th scope=\"col\">p above</th><th scope=\"col\">p "
+            "below</th><th scope=\"col\">p</th><th scope=\"col\" "
+            "class=\"word\">result</th></tr></thead>\n<tbody>\n",
+            50 - 100 * margin, 50 + 100 * margin, 100 * (1 - 2 * (1 - r->conf)));
+    for (size_t i = 0; i < r->choices.cell_count; i++)
+        if (!r->choices.cells[i].right)
+            equivalence_row(r, &r->choices.cells[i], margin);
+    fputs(
+        "</tbody></table></div>\n<p>p above and below: that the share lies above the lower and below the "
+        "upper end of the margin; p is the larger of both, not adjusted for the number of cells. Only a small "
+        "p shows equality, and equality within this margin alone; a large p in the table before does "
+        "not.</p>\n",
+        out);
+}
+
+void report_equivalence(const struct report *r)
+{
+    bool differ;
+    double margin = plans_margin(&r->plans, &differ);
+    if (differ)
+        fputs("<p class=\"note\">Equivalence is not tested here: the sessions\u2019 protocols plan different "
+              "margins; <code>fovstats choices --margin M</code> tests one.</p>\n",
+              r->out);
+    else if (!isnan(margin) && r->conf > 0.5)
+        equivalence_table(r, margin);
+    else if (!isnan(margin))
+        fputs("<p class=\"note\">Equivalence within the protocol\u2019s margin is tested at a confidence above "
+              "0.5 only.</p>\n",
+              r->out);
+}
