@@ -1,6 +1,8 @@
 #include "analysis/stats/power_simulation.h"
 
 #include "analysis/stats/draw.h"
+#include "analysis/stats/equivalence.h"
+#include "analysis/stats/people_equivalence.h"
 #include "analysis/stats/signflip.h"
 
 #include <Rmath.h>
@@ -48,7 +50,8 @@ static bool valid(const struct stat_simulation *s, int64_t *most)
 {
     *most = 0;
     if (!s->choices_count || !s->people || s->people > STAT_SIMULATED_PEOPLE ||
-        !(s->alpha > 0 && s->alpha < 1) || s->studies < 1 || s->studies > STAT_SIMULATED_STUDIES)
+        !(s->alpha > 0 && s->alpha < (s->margin != 0 ? 0.5 : 1)) || !(s->margin >= 0 && s->margin <= 0.5) ||
+        s->studies < 1 || s->studies > STAT_SIMULATED_STUDIES)
         return false;
     for (size_t i = 0; i < s->people; i++) {
         int64_t n = s->choices[i % s->choices_count];
@@ -76,9 +79,16 @@ static void answer(const struct stat_simulation *s, double b, int64_t most, uint
 
 static double p_value(const struct stat_simulation *s, int64_t most, const struct stat_person *people)
 {
+    if (most > 1 && s->margin > 0) {
+        // People who all have the same share have no t, and show nothing.
+        double p = stat_people_equivalence(people, s->people, 0.5, s->margin, s->alpha).p_value;
+        return isnan(p) ? 1 : p;
+    }
     if (most > 1)
         return stat_signflip(people, s->people, STAT_TWO_SIDED).p_value;
     struct stat_people sum = stat_people_sum(people, s->people);
+    if (s->margin > 0)
+        return stat_binomial_equivalence(sum.k, sum.n, 0.5, s->margin, s->alpha).p_value;
     return stat_binomial_p(sum.k, sum.n, 0.5, STAT_TWO_SIDED);
 }
 

@@ -4,8 +4,9 @@
 // Person i of N makes choices[i mod count] choices, each for the option under test with probability
 // 1 / (1 + exp(-(b + sd z_i))), z_i standard normal, once a person: the model of mixed_logit.h. b is the number
 // for which the mean over people is `share`. The test is the one that analyses make by default: where nobody
-// has more than one choice the exact binomial test, else the sign-flip test, both two-sided against one half.
-// Draws are draw.h's: a function of the seed.
+// has more than one choice the exact binomial test, else the sign-flip test, both two-sided against one half;
+// with a margin the test of equivalence, exact of one choice each (equivalence.h), else the t-tests of
+// people_equivalence.h. Draws are draw.h's: a function of the seed.
 #ifndef ANALYSIS_STATS_POWER_SIMULATION_H
 #define ANALYSIS_STATS_POWER_SIMULATION_H
 
@@ -29,6 +30,8 @@ struct stat_simulation {
     double alpha; // in (0, 1)
     int64_t studies;
     uint64_t seed;
+    double margin; // 0: how often a difference is found; else, up to 0.5, how often equality within it is shown
+                   // at alpha below 0.5
 };
 
 struct stat_simulated_power {

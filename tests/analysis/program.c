@@ -48,3 +48,18 @@ void program_free(struct program_result *result)
     free(result->out);
     free(result->err);
 }
+
+int program_enter_folder(void **state)
+{
+    static char folder[] = "/tmp/fovstats-test-XXXXXX"; // of the whole program, which has one group of tests
+    *state = mkdtemp(folder);
+    return *state && chdir(folder) == 0 ? 0 : -1;
+}
+
+int program_leave_folder(void **state)
+{
+    struct program_result r = program_run((const char *const[]){"/bin/rm", "-rf", *state, NULL}, NULL);
+    int code = chdir("/") == 0 ? r.code : -1;
+    program_free(&r);
+    return code;
+}

@@ -11,4 +11,8 @@ struct program_result {
 struct program_result program_run(const char *const *argv, const char *path);
 void program_free(struct program_result *result);
 
+// For cmocka_run_group_tests(): a new folder that the test works in, and its removal.
+int program_enter_folder(void **state);
+int program_leave_folder(void **state);
+
 #endif

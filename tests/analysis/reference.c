@@ -53,6 +53,24 @@ size_t reference_numbers(const char *text, double *out, size_t most)
     return count;
 }
 
+double reference_value(const char *file, const char *name)
+{
+    FILE *table = reference_open(file);
+    char line[256];
+    bool found = false;
+    double value = (double)NAN;
+    while (!found && fgets(line, sizeof line, table)) {
+        char *rest = line;
+        found = strcmp(reference_field(&rest, ','), name) == 0;
+        if (found)
+            value = strtod(rest, NULL);
+    }
+    fclose(table);
+    if (!found || isnan(value))
+        fail_msg("%s has no value for %s", file, name);
+    return value;
+}
+
 double reference_distance(double a, double b)
 {
     if ((isnan(a) && isnan(b)) || a == b)

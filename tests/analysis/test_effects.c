@@ -20,21 +20,6 @@
 
 static const char fovstats[] = BUILD_DIR "/bin/fovstats";
 
-static int enter_folder(void **state)
-{
-    static char folder[] = "/tmp/fovstats-effects-XXXXXX";
-    *state = mkdtemp(folder);
-    return *state && chdir(folder) == 0 ? 0 : -1;
-}
-
-static int leave_folder(void **state)
-{
-    const char *rm[] = {"/bin/rm", "-rf", *state, NULL};
-    struct program_result r = program_run(rm, NULL);
-    program_free(&r);
-    return 0;
-}
-
 // One choice of effects_answers.csv as a trial of session p.
 static void add_answer(char **fields, char *sql, size_t size)
 {
@@ -273,5 +258,5 @@ int main(void)
         cmocka_unit_test(halves_meet_the_convolution),
         cmocka_unit_test(frames_of_both_options_agree_with_r),
     };
-    return cmocka_run_group_tests_name("effects", tests, enter_folder, leave_folder);
+    return cmocka_run_group_tests_name("effects", tests, program_enter_folder, program_leave_folder);
 }

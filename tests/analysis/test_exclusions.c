@@ -50,21 +50,11 @@ static const char more[] =
 
 static int enter_folder(void **state)
 {
-    static char folder[] = "/tmp/fovstats-test-XXXXXX";
-    *state = mkdtemp(folder);
-    if (!*state || chdir(folder) != 0)
+    if (program_enter_folder(state) != 0)
         return -1;
     study_file_make("s.db", &(struct study_desc){.excluded = true});
     study_file_sql("s.db", more);
     study_file_make("plain.db", &(struct study_desc){.pooled = false});
-    return 0;
-}
-
-static int leave_folder(void **state)
-{
-    const char *rm[] = {"/bin/rm", "-rf", *state, NULL};
-    struct program_result r = program_run(rm, NULL);
-    program_free(&r);
     return 0;
 }
 
@@ -185,5 +175,5 @@ int main(void)
         cmocka_unit_test(null_and_catch_trials_have_a_table),
         cmocka_unit_test(what_if),
     };
-    return cmocka_run_group_tests_name("exclusions", tests, enter_folder, leave_folder);
+    return cmocka_run_group_tests_name("exclusions", tests, enter_folder, program_leave_folder);
 }

@@ -18,20 +18,6 @@ static const char fovstats[] = BUILD_DIR "/bin/fovstats";
 #define RUN(...) program_run((const char *const[]){__VA_ARGS__, NULL}, NULL)
 #define EXPORT(...) RUN(fovstats, "export", __VA_ARGS__)
 
-static int enter_folder(void **state)
-{
-    static char folder[] = "/tmp/fovstats-test-XXXXXX";
-    *state = mkdtemp(folder);
-    return *state && chdir(folder) == 0 ? 0 : -1;
-}
-
-static int leave_folder(void **state)
-{
-    struct program_result r = RUN("/bin/rm", "-rf", *state);
-    program_free(&r);
-    return 0;
-}
-
 static void expect_done(struct program_result r)
 {
     if (r.code != 0)
@@ -104,5 +90,5 @@ int main(void)
         cmocka_unit_test(keeps_the_rules),
         cmocka_unit_test(bad_input_has_a_sentence),
     };
-    return cmocka_run_group_tests_name("export", tests, enter_folder, leave_folder);
+    return cmocka_run_group_tests_name("export", tests, program_enter_folder, program_leave_folder);
 }

@@ -17,20 +17,6 @@
 static const char fovstats[] = BUILD_DIR "/bin/fovstats";
 static const char *const names[] = {"choices", "choices_narrow", "ratings_before_after_1", "frame_times"};
 
-static int enter_folder(void **state)
-{
-    static char folder[] = "/tmp/fovstats-figures-XXXXXX";
-    *state = mkdtemp(folder);
-    return *state && chdir(folder) == 0 ? 0 : -1;
-}
-
-static int leave_folder(void **state)
-{
-    struct program_result r = program_run((const char *const[]){"/bin/rm", "-rf", *state, NULL}, NULL);
-    program_free(&r);
-    return 0;
-}
-
 static struct program_result report(const char *folder, const char *path, bool simulated)
 {
     study_file_make("s.db", &(struct study_desc){.simulated = simulated});
@@ -130,5 +116,5 @@ int main(void)
         cmocka_unit_test(pdf_where_it_can_be_made),
         cmocka_unit_test(a_file_is_no_folder),
     };
-    return cmocka_run_group_tests(tests, enter_folder, leave_folder);
+    return cmocka_run_group_tests(tests, program_enter_folder, program_leave_folder);
 }

@@ -17,30 +17,13 @@
 
 #include <cmocka.h>
 
-static double expected(const char *name)
-{
-    FILE *file = reference_open("image_measures.csv");
-    char line[256];
-    double value = 0;
-    bool found = false;
-    while (!found && fgets(line, sizeof line, file)) {
-        char *rest = line, *field = reference_field(&rest, ',');
-        found = strcmp(field, name) == 0;
-        if (found)
-            value = reference_number(rest);
-    }
-    fclose(file);
-    if (!found)
-        fail_msg("no reference value %s", name);
-    return value;
-}
-
 // The absolute error, which must not exceed `most`; the largest is kept in `worst`.
 static void compare(const char *name, double value, double most, double *worst)
 {
-    double error = fabs(value - expected(name));
+    double error = fabs(value - reference_value("image_measures.csv", name));
     if (!(error <= most))
-        fail_msg("%s: %.9g, reference %.9g, error %.2g", name, value, expected(name), error);
+        fail_msg("%s: %.9g, reference %.9g, error %.2g", name, value,
+                 reference_value("image_measures.csv", name), error);
     if (error > *worst)
         *worst = error;
 }
@@ -75,7 +58,8 @@ static void psnr(void **state)
         struct image_error error = image_error_result(&sums.region[region]);
         char name[64];
         snprintf(name, sizeof name, "pixels.%s", formula_region_name(region));
-        assert_true((double)formula_ring_pixels(rings, FORMULA_HEIGHT, region) == expected(name));
+        assert_true((double)formula_ring_pixels(rings, FORMULA_HEIGHT, region) ==
+                    reference_value("image_measures.csv", name));
         assert_true(sums.region[region].values == 3 * formula_ring_pixels(rings, FORMULA_HEIGHT, region));
         snprintf(name, sizeof name, "psnr.%s", formula_region_name(region));
         compare(name, error.psnr_db, 1e-11, &worst);
@@ -181,7 +165,7 @@ static void flicker_excess(void **state)
     for (int region = 0; region < IMAGE_REGIONS; region++) {
         char name[64];
         snprintf(name, sizeof name, "excess.count.%s", formula_region_name(region));
-        assert_true((double)sum.count[region] == expected(name));
+        assert_true((double)sum.count[region] == reference_value("image_measures.csv", name));
     }
     print_message("flicker excess: within %.1e levels\n", worst);
     image_flicker_excess_destroy(flicker);

@@ -21,20 +21,6 @@ static const char fovstats[] = BUILD_DIR "/bin/fovstats";
 #define RUN(...) program_run((const char *const[]){__VA_ARGS__, NULL}, NULL)
 #define MERGE(...) RUN(fovstats, "merge", __VA_ARGS__)
 
-static int enter_folder(void **state)
-{
-    static char folder[] = "/tmp/fovstats-test-XXXXXX";
-    *state = mkdtemp(folder);
-    return *state && chdir(folder) == 0 ? 0 : -1;
-}
-
-static int leave_folder(void **state)
-{
-    struct program_result r = RUN("/bin/rm", "-rf", *state);
-    program_free(&r);
-    return 0;
-}
-
 // One value of one query, as text.
 static const char *ask(const char *path, const char *sql)
 {
@@ -285,5 +271,5 @@ int main(void)
         cmocka_unit_test(the_later_copy_holds),      cmocka_unit_test(what_does_not_belong_is_refused),
         cmocka_unit_test(erased_people_stay_erased), cmocka_unit_test(bad_files_have_a_sentence),
     };
-    return cmocka_run_group_tests_name("merge", tests, enter_folder, leave_folder);
+    return cmocka_run_group_tests_name("merge", tests, program_enter_folder, program_leave_folder);
 }

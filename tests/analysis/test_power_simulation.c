@@ -3,6 +3,7 @@
 #include "analysis/stats/power_simulation.h"
 #include "program.h"
 #include "reference.h"
+#include "said.h"
 #include "study_file.h"
 
 #include <math.h>
@@ -23,20 +24,6 @@ static const char fovstats[] = BUILD_DIR "/bin/fovstats";
 
 enum { STUDIES = 20000 };
 
-static int enter_folder(void **state)
-{
-    static char folder[] = "/tmp/fovstats-power-XXXXXX";
-    *state = mkdtemp(folder);
-    return *state && chdir(folder) == 0 ? 0 : -1;
-}
-
-static int leave_folder(void **state)
-{
-    struct program_result r = program_run((const char *const[]){"/bin/rm", "-rf", *state, NULL}, NULL);
-    program_free(&r);
-    return 0;
-}
-
 // Both simulate: 4 standard errors of the difference are passed once in 16,000 honest comparisons.
 static void agrees_with_r(void **state)
 {
@@ -51,7 +38,7 @@ static void agrees_with_r(void **state)
         for (int i = 0; i < 8; i++)
             v[i] = strtod(reference_field(&rest, ','), NULL);
         int64_t choices = (int64_t)v[1];
-        const struct stat_simulation s = {&choices, 1, (size_t)v[0], v[2], v[3], v[4], STUDIES, 11};
+        const struct stat_simulation s = {&choices, 1, (size_t)v[0], v[2], v[3], v[4], STUDIES, 11, 0};
         struct stat_simulated_power power = stat_simulate_power(&s);
         double error = sqrt(v[7] * v[7] + v[6] * (1 - v[6]) / STUDIES);
         if (!(fabs(power.intercept - v[5]) < 1e-8) || !(fabs(power.power - v[6]) <= 4 * error))
@@ -67,10 +54,10 @@ static void bad_input(void **state)
 {
     (void)state;
     int64_t one = 1, none = 0, negative = -1;
-    const struct stat_simulation good = {&one, 1, 10, 0.7, 0, 0.05, 100, 1};
+    const struct stat_simulation good = {&one, 1, 10, 0.7, 0, 0.05, 100, 1, 0};
     assert_true(stat_simulate_power(&good).power > 0);
-    struct stat_simulation bad[9];
-    for (int i = 0; i < 9; i++)
+    struct stat_simulation bad[11];
+    for (int i = 0; i < 11; i++)
         bad[i] = good;
     bad[0].share = 1;
     bad[1].share = (double)NAN;
@@ -81,38 +68,32 @@ static void bad_input(void **state)
     bad[6].choices = &negative;
     bad[7].studies = 0;
     bad[8].choices_count = 0;
-    for (int i = 0; i < 9; i++)
+    bad[9].margin = -0.1;
+    bad[10].margin = (double)NAN;
+    for (int i = 0; i < 11; i++)
         assert_true(isnan(stat_simulate_power(&bad[i]).power));
-}
-
-static double after(const char *json, const char *place, const char *key)
-{
-    char quoted[64];
-    snprintf(quoted, sizeof quoted, "\"%s\":", key);
-    const char *at = strstr(json, place);
-    if (!at || !(at = strstr(at, quoted)))
-        fail_msg("no %s after %s in %s", key, place, json);
-    return strtod(at + strlen(quoted), NULL);
 }
 
 static void command_plans(void **state)
 {
     (void)state;
-    struct program_result r = FOVSTATS("power", "--share", "0.75", "--people", "22", "--json");
+    struct program_result r = FOVSTATS("power", "--share", "0.75", "--participants", "22", "--json");
     assert_int_equal(r.code, 0);
     // R: tests/reference/power_simulation.csv; 30 and 35 are counts.R's
-    assert_true(fabs(after(r.out, "sizes", "power") - 0.516797834436943) < 1e-12);
-    assert_true(after(r.out, "sizes", "people_first") == 30 && after(r.out, "sizes", "people_stays") == 35);
+    assert_true(fabs(said_after(r.out, "sizes", "power") - 0.516797834436943) < 1e-12);
+    assert_true(said_after(r.out, "sizes", "people_first") == 30 &&
+                said_after(r.out, "sizes", "people_stays") == 35);
     program_free(&r);
-    r = FOVSTATS("power", "--share", "0.9", "--sd", "0.5", "--choices", "20", "--people", "5..7", "--json");
+    r = FOVSTATS("power", "--share", "0.9", "--sd", "0.5", "--choices", "20", "--participants", "5..7",
+                 "--json");
     assert_int_equal(r.code, 0);
-    assert_true(after(r.out, "\"people\":5", "power") == 0);  // 2 / 2^5 cannot reach 0.05
-    assert_true(after(r.out, "\"people\":6", "power") > 0.9); // 2 / 2^6 can
-    assert_true(after(r.out, "{", "people_in_range") == 6);
+    assert_true(said_after(r.out, "\"people\":5", "power") == 0);  // 2 / 2^5 cannot reach 0.05
+    assert_true(said_after(r.out, "\"people\":6", "power") > 0.9); // 2 / 2^6 can
+    assert_true(said_after(r.out, "{", "people_in_range") == 6);
     program_free(&r);
     struct program_result again =
-        FOVSTATS("power", "--share", "0.6", "--choices", "8", "--people", "12", "--json");
-    r = FOVSTATS("power", "--share", "0.6", "--choices", "8", "--people", "12", "--json");
+        FOVSTATS("power", "--share", "0.6", "--choices", "8", "--participants", "12", "--json");
+    r = FOVSTATS("power", "--share", "0.6", "--choices", "8", "--participants", "12", "--json");
     assert_string_equal(r.out, again.out);
     program_free(&r);
     program_free(&again);
@@ -123,10 +104,11 @@ static void command_takes_a_rehearsal(void **state)
 {
     (void)state;
     study_file_make("r.db", &(struct study_desc){.several = true, .simulated = true});
-    struct program_result r =
-        FOVSTATS("power", "r.db", "--simulated", "--share", "0.75", "--people", "22", "--sd", "0.5", "--json");
+    struct program_result r = FOVSTATS("power", "r.db", "--simulated", "--share", "0.75", "--participants",
+                                       "22", "--sd", "0.5", "--json");
     assert_int_equal(r.code, 0);
-    double several = after(r.out, "epsilon 0.2\"", "power"), one = after(r.out, "epsilon 0.05\"", "power");
+    double several = said_after(r.out, "epsilon 0.2\"", "power"),
+           one = said_after(r.out, "epsilon 0.05\"", "power");
     assert_true(several > 0.99 && fabs(one - 0.516797834436943) < 1e-12);
     assert_non_null(strstr(r.out, "\"data_sha256\":\""));
     program_free(&r);
@@ -143,13 +125,13 @@ static void wrong_use(void **state)
         {{fovstats, "power"}, 2, "needs --share P"},
         {{fovstats, "power", "--share", "1"}, 2, "--share is 1 but must lie between 0 and 1"},
         {{fovstats, "power", "--share", "nan"}, 2, "--share is \"nan\" but must be a number"},
-        {{fovstats, "power", "--share", "0.7", "--choices", "4"}, 2, "needs --people"},
-        {{fovstats, "power", "--share", "0.7", "--people", "9..3"}, 2, "--people is \"9..3\""},
-        {{fovstats, "power", "--share", "0.7", "--people", "1..900"}, 2, "--people is \"1..900\""},
+        {{fovstats, "power", "--share", "0.7", "--choices", "4"}, 2, "needs --participants"},
+        {{fovstats, "power", "--share", "0.7", "--participants", "9..3"}, 2, "--participants is \"9..3\""},
+        {{fovstats, "power", "--share", "0.7", "--participants", "1..900"}, 2, "--participants is \"1..900\""},
         {{fovstats, "power", "--share", "0.7", "--sd", "-1"}, 2, "--sd is -1 but must be from 0 to 10"},
         {{fovstats, "power", "--share", "0.7", "--studies", "5"}, 2, "--studies is 5"},
         {{fovstats, "power", "--share", "0.7", "--alpha", "0"}, 2, "--alpha is 0"},
-        {{fovstats, "power", "none.db", "--share", "0.7", "--people", "5"},
+        {{fovstats, "power", "none.db", "--share", "0.7", "--participants", "5"},
          1,
          "none.db: there is no such file"},
     };
@@ -169,5 +151,5 @@ int main(void)
         cmocka_unit_test(command_plans), cmocka_unit_test(command_takes_a_rehearsal),
         cmocka_unit_test(wrong_use),
     };
-    return cmocka_run_group_tests(tests, enter_folder, leave_folder);
+    return cmocka_run_group_tests(tests, program_enter_folder, program_leave_folder);
 }

@@ -19,20 +19,6 @@ static const char fovstats[] = BUILD_DIR "/bin/fovstats";
 
 enum { HEX = 64 };
 
-static int enter_folder(void **state)
-{
-    static char folder[] = "/tmp/fovstats-provenance-XXXXXX";
-    *state = mkdtemp(folder);
-    return *state && chdir(folder) == 0 ? 0 : -1;
-}
-
-static int leave_folder(void **state)
-{
-    struct program_result r = program_run((const char *const[]){"/bin/rm", "-rf", *state, NULL}, NULL);
-    program_free(&r);
-    return 0;
-}
-
 static void take_hash(struct program_result r, const char *mark, char out[HEX + 1])
 {
     const char *at = strstr(r.out, mark);
@@ -120,5 +106,5 @@ int main(void)
         cmocka_unit_test(another_hash_for_other_data),
         cmocka_unit_test(order_of_files_plays_no_part),
     };
-    return cmocka_run_group_tests(tests, enter_folder, leave_folder);
+    return cmocka_run_group_tests(tests, program_enter_folder, program_leave_folder);
 }

@@ -51,38 +51,7 @@ static const char both[] = "CREATE TABLE made AS SELECT i.value AS i, c.value AS
                            "THEN 1 ELSE 2 END, CASE i % 2 "
                            "WHEN 1 THEN reference ELSE test END, 1, 10, 6 FROM made WHERE id <> 2051;";
 
-static int enter_folder(void **state)
-{
-    static char folder[] = "/tmp/fovstats-test-XXXXXX";
-    *state = mkdtemp(folder);
-    return *state && chdir(folder) == 0 ? 0 : -1;
-}
-
-static int leave_folder(void **state)
-{
-    const char *rm[] = {"/bin/rm", "-rf", *state, NULL};
-    struct program_result r = program_run(rm, NULL);
-    program_free(&r);
-    return 0;
-}
-
 #define FOVSTATS(...) program_run((const char *const[]){fovstats, __VA_ARGS__, NULL}, NULL)
-
-static double expected(const char *name)
-{
-    FILE *file = reference_open("ratings.csv");
-    char line[256];
-    double value = (double)NAN;
-    while (fgets(line, sizeof line, file)) {
-        char *rest = line;
-        if (strcmp(reference_field(&rest, ','), name) == 0)
-            value = strtod(rest, NULL);
-    }
-    fclose(file);
-    if (isnan(value))
-        fail_msg("ratings.csv has no %s", name);
-    return value;
-}
 
 // The number after the first "key": that follows each of the marks in turn.
 static double number_after(const char *json, const char *first, const char *second, const char *key)
@@ -100,7 +69,7 @@ static double number_after(const char *json, const char *first, const char *seco
 static void expect_number(const char *json, const char *first, const char *second, const char *key,
                           const char *name)
 {
-    double got = number_after(json, first, second, key), want = expected(name);
+    double got = number_after(json, first, second, key), want = reference_value("ratings.csv", name);
     if (!reference_close(got, want, 1e-10))
         fail_msg("%s: %.17g, R %.17g", name, got, want);
 }
@@ -282,8 +251,8 @@ static void the_report_shows_them(void **state)
                                                    "id=\"factorial-0-w-title\"", "Cousineau",
                                                    "id=\"likert-0-n-title\"", NULL});
     char below[32], above[32]; // the ends of the bars
-    snprintf(below, sizeof below, "%.0f %%</text>", expected("small.percent_below"));
-    snprintf(above, sizeof above, "%.0f %%</text>", expected("full.percent_above"));
+    snprintf(below, sizeof below, "%.0f %%</text>", reference_value("ratings.csv", "small.percent_below"));
+    snprintf(above, sizeof above, "%.0f %%</text>", reference_value("ratings.csv", "full.percent_above"));
     expect_in_report("f.db", (const char *const[]){below, above, NULL});
     // Words of a study stay words, in the table, in the figure and in the terminal.
     study_file_sql(
@@ -353,5 +322,5 @@ int main(void)
                                        cmocka_unit_test(other_rules_change_them),
                                        cmocka_unit_test(what_cannot_be_analysed_is_said),
                                        cmocka_unit_test(not_finite_is_said)};
-    return cmocka_run_group_tests(tests, enter_folder, leave_folder);
+    return cmocka_run_group_tests(tests, program_enter_folder, program_leave_folder);
 }

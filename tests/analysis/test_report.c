@@ -16,21 +16,6 @@
 
 static const char fovstats[] = BUILD_DIR "/bin/fovstats";
 
-static int enter_folder(void **state)
-{
-    static char folder[] = "/tmp/fovstats-test-XXXXXX";
-    *state = mkdtemp(folder);
-    return *state && chdir(folder) == 0 ? 0 : -1;
-}
-
-static int leave_folder(void **state)
-{
-    const char *rm[] = {"/bin/rm", "-rf", *state, NULL};
-    struct program_result r = program_run(rm, NULL);
-    program_free(&r);
-    return 0;
-}
-
 static char *slurp(const char *path)
 {
     FILE *file = fopen(path, "r");
@@ -463,5 +448,5 @@ int main(void)
         cmocka_unit_test(failures_write_nothing),
         cmocka_unit_test(a_figure_becomes_part_of_a_page),
     };
-    return cmocka_run_group_tests(tests, enter_folder, leave_folder);
+    return cmocka_run_group_tests(tests, program_enter_folder, program_leave_folder);
 }

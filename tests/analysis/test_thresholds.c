@@ -21,21 +21,6 @@ static const char fovstats[] = BUILD_DIR "/bin/fovstats";
 
 #define FOVSTATS(...) program_run((const char *const[]){fovstats, __VA_ARGS__, NULL}, NULL)
 
-static int enter_folder(void **state)
-{
-    static char folder[] = "/tmp/fovstats-test-XXXXXX";
-    *state = mkdtemp(folder);
-    return *state && chdir(folder) == 0 ? 0 : -1;
-}
-
-static int leave_folder(void **state)
-{
-    const char *rm[] = {"/bin/rm", "-rf", *state, NULL};
-    struct program_result r = program_run(rm, NULL);
-    program_free(&r);
-    return 0;
-}
-
 // The place after each of the marks in turn, the last a key: its value.
 static const char *after(const char *json, const char *const *marks)
 {
@@ -345,5 +330,5 @@ int main(void)
         cmocka_unit_test(jod_of_a_star),
         cmocka_unit_test(the_report_has_them),
     };
-    return cmocka_run_group_tests(tests, enter_folder, leave_folder);
+    return cmocka_run_group_tests(tests, program_enter_folder, program_leave_folder);
 }

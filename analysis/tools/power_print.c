@@ -1,0 +1,145 @@
+// What `fovstats power` says of one planned test.
+#include "analysis/stats/power_simulation.h"
+#include "analysis/tools/arguments.h"
+#include "analysis/tools/power_plan.h"
+#include "analysis/tools/table.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+
+static const double none = (double)NAN;
+
+struct row {
+    int64_t people;
+    struct stat_simulated_power power; // exact: ci is NaN
+};
+
+static struct stat_simulated_power simulate(const struct power_plan *plan, const struct power_case *c,
+                                            int64_t n)
+{
+    const struct stat_simulation simulation = {.choices = c->choices,
+                                               .choices_count = c->count,
+                                               .people = (size_t)n,
+                                               .share = plan->share,
+                                               .sd = plan->sd,
+                                               .alpha = plan->alpha,
+                                               .studies = (int64_t)plan->studies,
+                                               .seed = (uint64_t)plan->seed,
+                                               .margin = isnan(plan->margin) ? 0 : plan->margin};
+    return stat_simulate_power(&simulation);
+}
+
+static bool fill(const struct power_plan *plan, const struct power_case *c, struct row *rows)
+{
+    const struct power_test *test = power_plan_test(plan, c);
+    for (int64_t n = plan->from; n <= plan->to && plan->from; n++) {
+        struct row *row = &rows[n - plan->from];
+        *row = (struct row){n, {none, {none, none}, 0, none}};
+        if (test->at)
+            row->power.power = test->at(plan, c, n);
+        else
+            row->power = simulate(plan, c, n);
+        if (isnan(row->power.power))
+            return false;
+    }
+    return true;
+}
+
+// The smallest size of the range from which on all have the power; 0: none.
+static int64_t enough(const struct power_plan *plan, const struct row *rows)
+{
+    int64_t found = 0;
+    for (int64_t n = plan->to; n >= plan->from && rows[n - plan->from].power.power >= plan->power; n--)
+        found = n;
+    return found;
+}
+
+static void print_json(struct json *json, const struct power_plan *plan, const struct power_case *c,
+                       const struct row *rows)
+{
+    const struct power_test *test = power_plan_test(plan, c);
+    json_open(json, NULL, '{');
+    json_text(json, "cell", c->name);
+    json_text(json, "method", test->method);
+    json_open(json, "sizes", '[');
+    for (int64_t n = plan->from; n <= plan->to && plan->from; n++) {
+        const struct row *row = &rows[n - plan->from];
+        json_open(json, NULL, '{');
+        json_integer(json, "people", row->people);
+        json_number(json, "power", row->power.power);
+        json_number(json, "ci_low", row->power.ci.low);
+        json_number(json, "ci_high", row->power.ci.high);
+        json_close(json, '}');
+    }
+    json_close(json, ']');
+    if (test->needed) {
+        struct stat_sample_size size = test->needed(plan, c);
+        json_number(json, "people_first", size.first ? (double)size.first : none);
+        json_number(json, "people_stays", size.stays ? (double)size.stays : none);
+    } else {
+        int64_t in_range = enough(plan, rows);
+        json_number(json, "people_in_range", in_range ? (double)in_range : none);
+    }
+    json_close(json, '}');
+}
+
+static void print_needed(const struct power_plan *plan, const struct power_case *c, const struct row *rows)
+{
+    const struct power_test *test = power_plan_test(plan, c);
+    struct stat_sample_size size = test->needed ? test->needed(plan, c) : (struct stat_sample_size){0, 0};
+    int64_t in_range = test->needed ? 0 : enough(plan, rows);
+    if (test->needed && size.first == size.stays && size.first)
+        printf("A power of %g needs %" PRId64 " people; every larger number has it.\n", plan->power,
+               size.first);
+    else if (test->needed && size.first)
+        printf("A power of %g needs %" PRId64 " people; from %" PRId64 " on every larger number has it.\n",
+               plan->power, size.first, size.stays);
+    else if (test->needed)
+        printf("A power of %g is not reached by any number of people that was looked at.\n", plan->power);
+    else if (in_range)
+        printf("A power of %g is reached from %" PRId64 " people on, within the sizes above.\n", plan->power,
+               in_range);
+    else
+        printf("A power of %g is not reached within the sizes above.\n", plan->power);
+    putchar('\n');
+}
+
+static bool print_text(const struct power_plan *plan, const struct power_case *c, const struct row *rows)
+{
+    static const char *const headings[] = {"people", "power", "95 % of simulation", NULL};
+    struct table t;
+    table_init(&t, headings);
+    if (c->name[0])
+        printf("%s\n", c->name);
+    for (int64_t n = plan->from; n <= plan->to && plan->from; n++) {
+        const struct row *row = &rows[n - plan->from];
+        table_cell(&t, "%" PRId64, n);
+        table_cell(&t, "%.4f", row->power.power);
+        if (isnan(row->power.ci.low))
+            table_cell(&t, "exact");
+        else
+            table_cell(&t, "%.4f to %.4f", row->power.ci.low, row->power.ci.high);
+    }
+    bool ok = !plan->from || table_print(&t, stdout);
+    table_finish(&t);
+    print_needed(plan, c, rows);
+    return ok;
+}
+
+int power_show(const struct command *command, const struct power_plan *plan, const struct power_case *c,
+               struct json *json)
+{
+    struct row *rows = calloc((size_t)(plan->to - plan->from + 1), sizeof *rows);
+    bool ok = rows && fill(plan, c, rows);
+    if (ok && plan->json)
+        print_json(json, plan, c, rows);
+    else if (ok)
+        ok = print_text(plan, c, rows);
+    free(rows);
+    return ok ? -1
+              : command_fail(
+                    command, EXIT_FAILED,
+                    "%s%sthe power of this design cannot be calculated: nobody chooses, or not enough memory",
+                    c->name, c->name[0] ? ": " : "");
+}
