@@ -1,8 +1,10 @@
 #define _XOPEN_SOURCE 700 // nftw
 
 #include "analysis/tools/arguments.h"
+#include "analysis/tools/bids.h"
 #include "analysis/tools/json.h"
 #include "analysis/tools/psych_ds.h"
+#include "studies/store/merge.h"
 
 #include <errno.h>
 #include <ftw.h>
@@ -13,16 +15,35 @@
 #include <unistd.h>
 
 static const char help[] =
-    "usage: fovstats export DB -o DIR [--simulated] [--json]\n"
+    "usage: fovstats export DB... -o DIR [--format both|psych-ds|bids] [--simulated] [--json]\n"
     "\n"
-    "Writes a study file as a Psych-DS dataset: tidy CSV tables in DIR/data and their dictionary, with units "
-    "and\n"
-    "frames of reference, in DIR/dataset_description.json. Several files: fovstats merge first, which counts "
-    "no\n"
-    "session twice.\n"
-    "  -o DIR       must not exist; written whole or not at all\n"
-    "  --simulated  export simulated sessions, which are refused otherwise; names and description are branded\n"
-    "  --json       one object with the counts\n";
+    "Writes a study as datasets that other programs read:\n"
+    "  psych-ds  tidy CSV tables of everything in data, their dictionary, with units and frames of reference, "
+    "in\n"
+    "            dataset_description.json (Psych-DS 1.4.0)\n"
+    "  bids      answers, what was shown when, samples of the eye tracker, fixations and saccades, by "
+    "subject,\n"
+    "            session and run (BIDS 1.11.1, Eye-Tracking-BIDS)\n"
+    "Several files are joined as fovstats merge joins them: a session that is in several of them counts once.\n"
+    "  -o DIR           must not exist; written whole or not at all\n"
+    "  --format F       both (default): in DIR/psych-ds and DIR/bids; else DIR is the dataset\n"
+    "  --new-protocol   sessions of several protocols may be in the files that are joined\n"
+    "  --simulated      export simulated sessions, which are refused otherwise; names and description are "
+    "branded\n"
+    "  --json           one object with the counts\n";
+
+struct job {
+    const struct command *command;
+    char **paths;
+    size_t path_count;
+    const char *folder, *format;
+    bool psych_ds, bids;
+    bool new_protocol, simulated, json;
+    char part[768]; // fits a sentence
+    char error[1024];
+    struct bids_counts counts;
+    int64_t sessions;
+};
 
 struct found {
     int64_t sessions;
@@ -50,84 +71,162 @@ static void remove_folder(const char *path)
     nftw(path, remove_one, 16, FTW_DEPTH | FTW_PHYS);
 }
 
-// Beside itself as "DIR.part" and renamed.
-static bool write_beside(struct store_reader *reader, const char *folder, char *error, size_t error_size)
+static bool fail(struct job *job, const char *path, const char *what)
 {
-    char part[768]; // fits a sentence
-    if (snprintf(part, sizeof part, "%s.part", folder) >= (int)sizeof part) {
-        snprintf(error, error_size, "%s: the name is too long", folder);
-        return false;
-    }
-    remove_folder(part); // of an export that was interrupted
-    if (mkdir(part, 0777) != 0) {
-        snprintf(error, error_size, "%s: cannot be made: %s", part, strerror(errno));
-        return false;
-    }
-    bool ok = psych_ds_write(reader, part, error, error_size);
-    if (ok && rename(part, folder) != 0) {
-        snprintf(error, error_size, "%s: cannot be made: %s", folder, strerror(errno));
-        ok = false;
-    }
-    if (!ok)
-        remove_folder(part);
+    snprintf(job->error, sizeof job->error, "%.700s: %s", path, what);
+    return false;
+}
+
+static void say(void *user, const char *sentence)
+{
+    const struct job *job = user;
+    fprintf(stderr, "fovstats %s: %s\n", job->command->name, sentence);
+}
+
+// The one file, or all of them joined in the folder that is being written.
+static struct store_reader *open_study(struct job *job, const char *merged)
+{
+    if (job->path_count == 1)
+        return store_reader_open(job->paths[0], job->error, sizeof job->error);
+    struct store_merge_input *inputs = calloc(job->path_count, sizeof *inputs);
+    if (!inputs)
+        return NULL;
+    for (size_t i = 0; i < job->path_count; i++)
+        inputs[i].path = job->paths[i];
+    struct store_merge_desc desc = {.inputs = inputs,
+                                    .input_count = job->path_count,
+                                    .output = merged,
+                                    .new_protocol = job->new_protocol,
+                                    .say = say,
+                                    .user = job};
+    struct store_merge_counts counts;
+    bool ok = store_merge(&desc, &counts, job->error, sizeof job->error);
+    free(inputs);
+    return ok ? store_reader_open(merged, job->error, sizeof job->error) : NULL;
+}
+
+static bool check(struct job *job, struct store_reader *reader)
+{
+    const char *name = job->path_count == 1 ? store_reader_path(reader) : job->paths[0];
+    struct found found = {0};
+    if (!store_read_sessions(reader, look, &found))
+        return fail(job, name, store_reader_error(reader));
+    job->sessions = found.sessions;
+    if (found.sessions == 0)
+        return fail(job, name, "the study is empty: no session was recorded");
+    if (found.simulated != job->simulated)
+        return fail(job, name,
+                    job->simulated ? "there is no simulated session in it; leave --simulated out"
+                                   : "only simulated sessions are in it; add --simulated to export them");
+    return true;
+}
+
+// One dataset, in the folder itself or in a folder within.
+static bool write_set(struct job *job, struct store_reader *reader, bool bids)
+{
+    char path[800];
+    bool both = job->psych_ds && job->bids;
+    snprintf(path, sizeof path, "%s%s", job->part, !both ? "" : bids ? "/bids" : "/psych-ds");
+    if (both && mkdir(path, 0777) != 0)
+        return fail(job, path, strerror(errno));
+    return bids ? bids_write(reader, path, &job->counts, job->error, sizeof job->error)
+                : psych_ds_write(reader, path, job->error, sizeof job->error);
+}
+
+static bool write_sets(struct job *job)
+{
+    char merged[800];
+    snprintf(merged, sizeof merged, "%s/merged.db", job->part);
+    struct store_reader *reader = open_study(job, merged);
+    bool ok = reader && check(job, reader) && (!job->psych_ds || write_set(job, reader, false)) &&
+              (!job->bids || write_set(job, reader, true));
+    store_reader_close(reader);
+    if (ok && job->path_count > 1 && remove(merged) != 0)
+        ok = fail(job, merged, strerror(errno));
     return ok;
 }
 
-static int export_file(const struct command *command, struct store_reader *reader, const char *folder,
-                       bool simulated, bool json)
+// Beside itself as "DIR.part" and renamed.
+static bool write_beside(struct job *job)
 {
-    char error[1024] = "not enough memory";
-    struct found found = {0};
-    if (!store_read_sessions(reader, look, &found))
-        return command_fail(command, EXIT_FAILED, "%s", store_reader_error(reader));
-    if (found.sessions == 0)
-        return command_fail(command, EXIT_FAILED, "%s: the study is empty: no session was recorded",
-                            store_reader_path(reader));
-    if (found.simulated != simulated)
-        return command_fail(command, EXIT_FAILED,
-                            simulated ? "%s: there is no simulated session in it; leave --simulated out"
-                                      : "%s: only simulated sessions are in it; add --simulated to export them",
-                            store_reader_path(reader));
-    if (!write_beside(reader, folder, error, sizeof error))
-        return command_fail(command, EXIT_FAILED, "%s", error);
-    if (json) {
-        struct json out = {stdout, false};
-        json_open(&out, NULL, '{');
-        json_bool(&out, "simulated", simulated);
-        json_integer(&out, "sessions", found.sessions);
-        json_close(&out, '}');
-        putchar('\n');
-    } else {
-        printf("%s%s: %lld sessions\n", simulated ? "SIMULATED DATA. " : "", folder, (long long)found.sessions);
+    if (snprintf(job->part, sizeof job->part, "%s.part", job->folder) >= (int)sizeof job->part)
+        return fail(job, job->folder, "the name is too long");
+    remove_folder(job->part); // of an export that was interrupted
+    if (mkdir(job->part, 0777) != 0) {
+        snprintf(job->error, sizeof job->error, "%s: cannot be made: %s", job->part, strerror(errno));
+        return false;
     }
-    return command_finish(command);
+    bool ok = write_sets(job);
+    if (ok && rename(job->part, job->folder) != 0) {
+        snprintf(job->error, sizeof job->error, "%.700s: cannot be made: %s", job->folder, strerror(errno));
+        ok = false;
+    }
+    if (!ok)
+        remove_folder(job->part);
+    return ok;
+}
+
+static int print_json(const struct job *job)
+{
+    struct json out = {stdout, false};
+    json_open(&out, NULL, '{');
+    json_bool(&out, "simulated", job->simulated);
+    json_text(&out, "format", job->format);
+    json_integer(&out, "sessions", job->sessions);
+    if (job->bids) {
+        json_integer(&out, "recordings", job->counts.recordings);
+        json_integer(&out, "gaze_samples", job->counts.samples);
+        json_integer(&out, "gaze_samples_without_rate", job->counts.samples_without_rate);
+    }
+    json_close(&out, '}');
+    putchar('\n');
+    return command_finish(job->command);
+}
+
+static int print_text(const struct job *job)
+{
+    printf("%s%s: %lld %s", job->simulated ? "SIMULATED DATA. " : "", job->folder, (long long)job->sessions,
+           job->sessions == 1 ? "session" : "sessions");
+    if (job->bids)
+        printf(", %lld %s of gaze", (long long)job->counts.recordings,
+               job->counts.recordings == 1 ? "recording" : "recordings");
+    putchar('\n');
+    if (job->counts.samples_without_rate)
+        printf("Left out of BIDS, which demands a sampling frequency: %lld samples of gaze of which it cannot "
+               "be measured (too few in a row, or not between 10 Hz and 10 kHz).\n",
+               (long long)job->counts.samples_without_rate);
+    return command_finish(job->command);
 }
 
 static int run(const struct command *command, int argc, char **argv)
 {
-    const char *folder = NULL;
-    bool simulated = false, json = false;
-    const struct option options[] = {
-        {"-o", OPTION_TEXT, &folder}, {"--simulated", OPTION_FLAG, &simulated}, {"--json", OPTION_FLAG, &json}};
+    struct job job = {.command = command, .format = "both", .paths = argv, .error = "not enough memory"};
+    const struct option options[] = {{"-o", OPTION_TEXT, &job.folder},
+                                     {"--format", OPTION_TEXT, &job.format},
+                                     {"--new-protocol", OPTION_FLAG, &job.new_protocol},
+                                     {"--simulated", OPTION_FLAG, &job.simulated},
+                                     {"--json", OPTION_FLAG, &job.json}};
     int count = 0;
     int code = arguments_parse(command, argc, argv, options, sizeof options / sizeof options[0], &count);
     if (code >= 0)
         return code;
-    if (count != 1)
-        return command_fail(command, EXIT_USAGE,
-                            "needs one study file; join several with fovstats merge first");
-    if (!folder)
+    bool both = strcmp(job.format, "both") == 0;
+    job.path_count = (size_t)count;
+    job.psych_ds = both || strcmp(job.format, "psych-ds") == 0;
+    job.bids = both || strcmp(job.format, "bids") == 0;
+    if (!job.psych_ds && !job.bids)
+        return command_fail(command, EXIT_USAGE, "--format is \"%s\" but must be both, psych-ds or bids",
+                            job.format);
+    if (count == 0)
+        return command_fail(command, EXIT_USAGE, "needs at least one study file; see --help");
+    if (!job.folder)
         return command_fail(command, EXIT_USAGE, "needs -o DIR");
-    if (access(folder, F_OK) == 0)
-        return command_fail(command, EXIT_FAILED, "%s: exists already; give a new name", folder);
-    char error[1024];
-    struct store_reader *reader = store_reader_open(argv[0], error, sizeof error);
-    if (!reader)
-        return command_fail(command, EXIT_FAILED, "%s", error);
-    code = export_file(command, reader, folder, simulated, json);
-    store_reader_close(reader);
-    return code;
+    if (access(job.folder, F_OK) == 0)
+        return command_fail(command, EXIT_FAILED, "%s: exists already; give a new name", job.folder);
+    if (!write_beside(&job))
+        return command_fail(command, EXIT_FAILED, "%s", job.error);
+    return job.json ? print_json(&job) : print_text(&job);
 }
 
-const struct command command_export = {"export", "a Psych-DS dataset: CSV tables and their dictionary", help,
+const struct command command_export = {"export", "Psych-DS and BIDS datasets: tables, gaze, dictionaries", help,
                                        run};

@@ -65,6 +65,15 @@ static struct store_merge_input as_input(char *word, char **labs)
     return (struct store_merge_input){equals + 1, word};
 }
 
+static void print_counts(const struct store_merge_desc *desc, const struct store_merge_counts *counts)
+{
+    printf("%s: %zu %s, %lld %s, %lld %s; %lld %s counted once.\n", desc->output, desc->input_count,
+           desc->input_count == 1 ? "file" : "files", counts->participants,
+           counts->participants == 1 ? "participant" : "participants", counts->sessions,
+           counts->sessions == 1 ? "session" : "sessions", counts->twice,
+           counts->twice == 1 ? "was in several files and is" : "were in several files and are");
+}
+
 static int merge(const struct command *command, int argc, char **argv, struct store_merge_input *inputs,
                  char **labs)
 {
@@ -103,9 +112,7 @@ static int merge(const struct command *command, int argc, char **argv, struct st
         json_close(&out, '}');
         putchar('\n');
     } else {
-        printf("%s: %zu files, %lld participants, %lld sessions; %lld were in several files and are counted "
-               "once.\n",
-               desc.output, desc.input_count, counts.participants, counts.sessions, counts.twice);
+        print_counts(&desc, &counts);
     }
     return command_finish(command);
 }

@@ -1,8 +1,8 @@
 // Psych-DS: data files first, then the description of what they hold.
 #include "analysis/tools/psych_ds.h"
 
+#include "analysis/tools/cell.h"
 #include "analysis/tools/json.h"
-#include "studies/store/export.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -68,13 +68,8 @@ static void write_cell(FILE *out, bool header, const struct store_cell *cell)
     } else if (cell->kind == STORE_CELL_INTEGER) {
         fprintf(out, "%" PRId64, cell->integer);
     } else if (cell->kind == STORE_CELL_REAL) {
-        char text[40];
-        for (int digits = 15; digits <= 17; digits++) { // the shortest that reads back as the same number
-            snprintf(text, sizeof text, "%.*g", digits, cell->real);
-            if (strtod(text, NULL) == cell->real)
-                break;
-        }
-        fputs(text, out);
+        char text[CELL_NUMBER_SIZE];
+        fputs(cell_number(cell->real, text), out);
     } else if (cell->kind == STORE_CELL_TEXT) {
         write_text(out, cell->text);
     }

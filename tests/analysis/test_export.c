@@ -51,8 +51,10 @@ static void keeps_the_rules(void **state)
         study_file_sql("s.db", gaze);
         study_file_sql("s.db", "UPDATE participant SET code = 'P,\"\r\n\xc3\xa4' WHERE id = 2");
         expect_done(descs[i].simulated ? EXPORT("s.db", "-o", "d", "--simulated") : EXPORT("s.db", "-o", "d"));
+        expect_done(RUN("/usr/bin/env", "python3", SOURCE_DIR "/tests/analysis/psych_ds_rules.py", "d/psych-ds",
+                        "s.db"));
         expect_done(
-            RUN("/usr/bin/env", "python3", SOURCE_DIR "/tests/analysis/psych_ds_rules.py", "d", "s.db"));
+            RUN("/usr/bin/env", "python3", SOURCE_DIR "/tests/analysis/bids_rules.py", "d/bids", "s.db"));
         expect_done(descs[i].simulated ? EXPORT("s.db", "-o", "e", "--simulated") : EXPORT("s.db", "-o", "e"));
         expect_done(RUN("/usr/bin/diff", "-r", "d", "e"));
         expect_done(RUN("/bin/rm", "-r", "d", "e"));
@@ -68,7 +70,9 @@ static void bad_input_has_a_sentence(void **state)
     expect_fails(EXPORT("e.db", "-o", "d"), 1, "the study is empty", "d");
     study_file_make("a.db", &(struct study_desc){.several = true});
     expect_fails(EXPORT("a.db", "-o", "d", "--simulated"), 1, "no simulated session", "d");
-    expect_fails(EXPORT("a.db", "e.db", "-o", "d"), 2, "join several with fovstats merge", "d");
+    expect_fails(EXPORT("a.db", "s.db", "-o", "d"), 1, "people", "d");
+    expect_fails(EXPORT("-o", "d"), 2, "needs at least one study file", "d");
+    expect_fails(EXPORT("a.db", "-o", "d", "--format", "xml"), 2, "must be both, psych-ds or bids", "d");
     expect_fails(EXPORT("a.db"), 2, "needs -o DIR", "d");
     expect_fails(EXPORT("a.db", "-o", "nofolder/d"), 1, "cannot be made", "nofolder/d");
     study_file_sql("a.db", "PRAGMA user_version = 0"); // what a store of the version before would have written

@@ -42,6 +42,7 @@ BEGIN {
     only["stb"] = "stimuli/ app/"
     only["libfyaml.h"] = "studies/protocol/"
     only["lz4.h"] = "app/session/"
+    only["zlib.h"] = "analysis/tools/"
     only["Rmath.h"] = "analysis/stats/"
 }
 {
