@@ -47,8 +47,8 @@ static void write_source(FILE *out, const struct sample *sample, double width, d
     if (sample->simulated)
         fprintf(out,
                 "<text x=\"%g\" y=\"%g\" font-size=\"%g\" font-weight=\"bold\" text-anchor=\"end\" "
-                "fill=\"#8a1c1c\" %s>SIMULATED%s</text>\n",
-                width - 6, height + LINE_PX - 7, size, fonts, narrow ? "" : " DATA: no person took part");
+                "fill=\"#8a1c1c\" %s>SIMULATED DATA%s</text>\n",
+                width - 6, height + LINE_PX - 7, size, fonts, narrow ? "" : ": no person took part");
 }
 
 static void write_body(FILE *out, const char *at)
