@@ -45,7 +45,8 @@ static bool write_readme(struct bids *b)
         "direction\n"
         "  for both), every one as the tracker sent it; directions of gaze in degrees, right and up positive;\n"
         "- `*_physioevents.tsv.gz`: fixations and saccades found in them.\n\n"
-        "`n/a` is a missing value. `excluded` says whether a rule took a row out; nothing was left out here.\n"
+        "`n/a` is a missing value. `excluded` says whether a rule took a row out; such rows are here all the "
+        "same.\n"
         "Tabs and line ends in texts became spaces. Frames, checks of the tracker and the protocol's text are "
         "in\n"
         "the Psych-DS export, which has the same numbers of sessions, trials and conditions.\n",

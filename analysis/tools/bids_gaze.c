@@ -26,6 +26,8 @@ struct gaze {
     size_t at[GAZE_COLUMNS]; // where the columns of the table stand
     size_t run;              // whose files are open; SIZE_MAX: none
     struct eye eyes[BIDS_EYES];
+    FILE *out; // writes `line`
+    char line[512];
     struct bids_recording *recordings; // run by run, BIDS_EYES each
     bool failed;                       // inside a call that cannot say so
 };
@@ -65,17 +67,24 @@ static void put(FILE *out, double value)
     fprintf(out, "\t%s", isfinite(value) ? cell_number(value, text) : "n/a");
 }
 
+// What was written to the line goes to the file.
+static bool send_line(struct gaze *g, struct gzip_file *file)
+{
+    long size = ftell(g->out);
+    bool ok = fflush(g->out) == 0 && size > 0 && gzip_file_write(file, g->line, (size_t)size);
+    rewind(g->out);
+    return ok || bids_fail(g->bids, "%s: gaze cannot be written", g->bids->folder);
+}
+
 static void write_event(void *user, const struct gaze_event *e, const struct gaze_point *points)
 {
     (void)points;
     struct eye *eye = user;
     struct gaze *g = eye->gaze;
-    char line[512], seconds[CELL_SECONDS_SIZE];
-    FILE *out = fmemopen(line, sizeof line, "w");
-    if (!out || !open_gzip(g->bids, g->run, eye->index, "physioevents.tsv.gz", &eye->events)) {
+    char seconds[CELL_SECONDS_SIZE];
+    FILE *out = g->out;
+    if (!open_gzip(g->bids, g->run, eye->index, "physioevents.tsv.gz", &eye->events)) {
         g->failed = true;
-        if (out)
-            fclose(out);
         return;
     }
     fprintf(out, "%" PRId64 "\t%s\t%s", e->start_ns, cell_seconds(e->end_ns - e->start_ns, seconds),
@@ -86,10 +95,8 @@ static void write_event(void *user, const struct gaze_event *e, const struct gaz
     put(out, e->peak_deg_s);
     fprintf(out, "\t%d", e->cut);
     fprintf(out, eye->trial ? "\t%" PRId64 "\n" : "\tn/a\n", eye->trial);
-    long size = ftell(out);
-    fclose(out);
     g->recordings[g->run * BIDS_EYES + eye->index].events++;
-    if (!gzip_file_write(eye->events, line, (size_t)size))
+    if (!send_line(g, eye->events))
         g->failed = true;
 }
 
@@ -113,10 +120,8 @@ static double real(const struct store_cell *cell)
 
 static bool write_sample(struct gaze *g, struct eye *eye, const struct store_cell *cells)
 {
-    char line[512], seconds[CELL_SECONDS_SIZE];
-    FILE *out = fmemopen(line, sizeof line, "w");
-    if (!out)
-        return bids_fail(g->bids, "not enough memory");
+    char seconds[CELL_SECONDS_SIZE];
+    FILE *out = g->out;
     fprintf(out, "%" PRId64 "\t", cells[g->at[GAZE_DEVICE]].integer);
     static const int columns[] = {GAZE_X, GAZE_Y, GAZE_PUPIL};
     for (size_t i = 0; i < sizeof columns / sizeof columns[0]; i++) {
@@ -130,11 +135,7 @@ static bool write_sample(struct gaze *g, struct eye *eye, const struct store_cel
     fputc('\t', out);
     cell_write_tsv(out, &cells[g->at[GAZE_TRIAL]]);
     fputc('\n', out);
-    long size = ftell(out);
-    fclose(out);
-    return open_gzip(g->bids, g->run, eye->index, "physio.tsv.gz", &eye->samples) &&
-           (gzip_file_write(eye->samples, line, (size_t)size) ||
-            bids_fail(g->bids, "%s: gaze cannot be written", g->bids->folder));
+    return open_gzip(g->bids, g->run, eye->index, "physio.tsv.gz", &eye->samples) && send_line(g, eye->samples);
 }
 
 static bool take_sample(struct gaze *g, const struct store_cell *cells)
@@ -207,7 +208,8 @@ bool bids_write_gaze(struct bids *b)
     struct gaze g = {.bids = b, .run = SIZE_MAX};
     struct gaze_options options = gaze_options(GAZE_IVT);
     g.recordings = calloc(b->run_count * BIDS_EYES + 1, sizeof *g.recordings);
-    bool ok = g.recordings;
+    g.out = fmemopen(g.line, sizeof g.line, "w");
+    bool ok = g.recordings && g.out;
     for (size_t i = 0; i < BIDS_EYES; i++) {
         g.eyes[i].gaze = &g;
         g.eyes[i].index = i;
@@ -224,5 +226,7 @@ bool bids_write_gaze(struct bids *b)
     for (size_t i = 0; i < BIDS_EYES; i++)
         gaze_track_finish(&g.eyes[i].track);
     free(g.recordings);
+    if (g.out)
+        fclose(g.out);
     return ok;
 }

@@ -3,8 +3,8 @@
 #include "analysis/tools/arguments.h"
 #include "analysis/tools/bids.h"
 #include "analysis/tools/json.h"
+#include "analysis/tools/labs.h"
 #include "analysis/tools/psych_ds.h"
-#include "studies/store/merge.h"
 
 #include <errno.h>
 #include <ftw.h>
@@ -15,7 +15,8 @@
 #include <unistd.h>
 
 static const char help[] =
-    "usage: fovstats export DB... -o DIR [--format both|psych-ds|bids] [--simulated] [--json]\n"
+    "usage: fovstats export DB... [--lab NAME=DB]... -o DIR [--format both|psych-ds|bids] [--simulated]\n"
+    "                       [--json]\n"
     "\n"
     "Writes a study as datasets that other programs read:\n"
     "  psych-ds  tidy CSV tables of everything in data, their dictionary, with units and frames of reference, "
@@ -25,6 +26,7 @@ static const char help[] =
     "subject,\n"
     "            session and run (BIDS 1.11.1, Eye-Tracking-BIDS)\n"
     "Several files are joined as fovstats merge joins them: a session that is in several of them counts once.\n"
+    "  --lab NAME=DB    a file whose participants become NAME-CODE\n"
     "  -o DIR           must not exist; written whole or not at all\n"
     "  --format F       both (default): in DIR/psych-ds and DIR/bids; else DIR is the dataset\n"
     "  --new-protocol   sessions of several protocols may be in the files that are joined\n"
@@ -34,8 +36,8 @@ static const char help[] =
 
 struct job {
     const struct command *command;
-    char **paths;
-    size_t path_count;
+    struct store_merge_input *inputs; // the files
+    size_t input_count;
     const char *folder, *format;
     bool psych_ds, bids;
     bool new_protocol, simulated, json;
@@ -83,31 +85,30 @@ static void say(void *user, const char *sentence)
     fprintf(stderr, "fovstats %s: %s\n", job->command->name, sentence);
 }
 
+static bool joins(const struct job *job)
+{
+    return job->input_count > 1 || job->inputs[0].lab;
+}
+
 // The one file, or all of them joined in the folder that is being written.
 static struct store_reader *open_study(struct job *job, const char *merged)
 {
-    if (job->path_count == 1)
-        return store_reader_open(job->paths[0], job->error, sizeof job->error);
-    struct store_merge_input *inputs = calloc(job->path_count, sizeof *inputs);
-    if (!inputs)
-        return NULL;
-    for (size_t i = 0; i < job->path_count; i++)
-        inputs[i].path = job->paths[i];
-    struct store_merge_desc desc = {.inputs = inputs,
-                                    .input_count = job->path_count,
+    if (!joins(job))
+        return store_reader_open(job->inputs[0].path, job->error, sizeof job->error);
+    struct store_merge_desc desc = {.inputs = job->inputs,
+                                    .input_count = job->input_count,
                                     .output = merged,
                                     .new_protocol = job->new_protocol,
                                     .say = say,
                                     .user = job};
     struct store_merge_counts counts;
     bool ok = store_merge(&desc, &counts, job->error, sizeof job->error);
-    free(inputs);
     return ok ? store_reader_open(merged, job->error, sizeof job->error) : NULL;
 }
 
 static bool check(struct job *job, struct store_reader *reader)
 {
-    const char *name = job->path_count == 1 ? store_reader_path(reader) : job->paths[0];
+    const char *name = job->inputs[0].path;
     struct found found = {0};
     if (!store_read_sessions(reader, look, &found))
         return fail(job, name, store_reader_error(reader));
@@ -141,7 +142,7 @@ static bool write_sets(struct job *job)
     bool ok = reader && check(job, reader) && (!job->psych_ds || write_set(job, reader, false)) &&
               (!job->bids || write_set(job, reader, true));
     store_reader_close(reader);
-    if (ok && job->path_count > 1 && remove(merged) != 0)
+    if (ok && joins(job) && remove(merged) != 0)
         ok = fail(job, merged, strerror(errno));
     return ok;
 }
@@ -198,34 +199,48 @@ static int print_text(const struct job *job)
     return command_finish(job->command);
 }
 
-static int run(const struct command *command, int argc, char **argv)
+static int export(struct job *job, int argc, char **argv, char **labs)
 {
-    struct job job = {.command = command, .format = "both", .paths = argv, .error = "not enough memory"};
-    const struct option options[] = {{"-o", OPTION_TEXT, &job.folder},
-                                     {"--format", OPTION_TEXT, &job.format},
-                                     {"--new-protocol", OPTION_FLAG, &job.new_protocol},
-                                     {"--simulated", OPTION_FLAG, &job.simulated},
-                                     {"--json", OPTION_FLAG, &job.json}};
-    int count = 0;
-    int code = arguments_parse(command, argc, argv, options, sizeof options / sizeof options[0], &count);
+    const struct command *command = job->command;
+    const struct option options[] = {{"-o", OPTION_TEXT, &job->folder},
+                                     {"--format", OPTION_TEXT, &job->format},
+                                     {"--new-protocol", OPTION_FLAG, &job->new_protocol},
+                                     {"--simulated", OPTION_FLAG, &job->simulated},
+                                     {"--json", OPTION_FLAG, &job->json}};
+    int count = 0, code = labs_take(command, &argc, argv, labs);
+    if (code < 0)
+        code = arguments_parse(command, argc, argv, options, sizeof options / sizeof options[0], &count);
     if (code >= 0)
         return code;
-    bool both = strcmp(job.format, "both") == 0;
-    job.path_count = (size_t)count;
-    job.psych_ds = both || strcmp(job.format, "psych-ds") == 0;
-    job.bids = both || strcmp(job.format, "bids") == 0;
-    if (!job.psych_ds && !job.bids)
+    for (int i = 0; i < count; i++)
+        job->inputs[job->input_count++] = labs_input(argv[i], labs);
+    bool both = strcmp(job->format, "both") == 0;
+    job->psych_ds = both || strcmp(job->format, "psych-ds") == 0;
+    job->bids = both || strcmp(job->format, "bids") == 0;
+    if (!job->psych_ds && !job->bids)
         return command_fail(command, EXIT_USAGE, "--format is \"%s\" but must be both, psych-ds or bids",
-                            job.format);
+                            job->format);
     if (count == 0)
         return command_fail(command, EXIT_USAGE, "needs at least one study file; see --help");
-    if (!job.folder)
+    if (!job->folder)
         return command_fail(command, EXIT_USAGE, "needs -o DIR");
-    if (access(job.folder, F_OK) == 0)
-        return command_fail(command, EXIT_FAILED, "%s: exists already; give a new name", job.folder);
-    if (!write_beside(&job))
-        return command_fail(command, EXIT_FAILED, "%s", job.error);
-    return job.json ? print_json(&job) : print_text(&job);
+    if (access(job->folder, F_OK) == 0)
+        return command_fail(command, EXIT_FAILED, "%s: exists already; give a new name", job->folder);
+    if (!write_beside(job))
+        return command_fail(command, EXIT_FAILED, "%s", job->error);
+    return job->json ? print_json(job) : print_text(job);
+}
+
+static int run(const struct command *command, int argc, char **argv)
+{
+    struct job job = {.command = command, .format = "both", .error = "not enough memory"};
+    char **labs = calloc((size_t)argc + 1, sizeof *labs);
+    job.inputs = calloc((size_t)argc + 1, sizeof *job.inputs);
+    int code = labs && job.inputs ? export(&job, argc, argv, labs)
+                                  : command_fail(command, EXIT_FAILED, "%s", job.error);
+    free(job.inputs);
+    free(labs);
+    return code;
 }
 
 const struct command command_export = {"export", "Psych-DS and BIDS datasets: tables, gaze, dictionaries", help,

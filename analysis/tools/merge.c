@@ -1,9 +1,7 @@
-#include "studies/store/merge.h"
-
 #include "analysis/tools/arguments.h"
 #include "analysis/tools/json.h"
+#include "analysis/tools/labs.h"
 
-#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -28,43 +26,6 @@ static void say(void *user, const char *sentence)
     fprintf(stderr, "fovstats %s: %s\n", command->name, sentence);
 }
 
-// Takes the word --lab, which may come several times, out of the arguments and marks the NAME=DB after it in
-// `labs`, so that the files keep their order. -1, or the exit code.
-static int take_labs(const struct command *command, int *argc, char **argv, char **labs)
-{
-    int kept = 0;
-    size_t count = 0;
-    bool options = true;
-    for (int i = 0; i < *argc; i++) {
-        options = options && strcmp(argv[i], "--") != 0;
-        if (!options || strcmp(argv[i], "--lab") != 0) {
-            argv[kept++] = argv[i];
-            continue;
-        }
-        const char *equals = i + 1 < *argc ? strchr(argv[i + 1], '=') : NULL;
-        if (!equals || equals == argv[i + 1] || !equals[1])
-            return command_fail(command, EXIT_USAGE, "--lab needs NAME=DB; see --help");
-        for (const char *c = argv[i + 1]; c < equals; c++)
-            if (!isalnum((unsigned char)*c))
-                return command_fail(command, EXIT_USAGE, "--lab's name must be letters and digits");
-        argv[kept++] = labs[count++] = argv[++i];
-    }
-    *argc = kept;
-    return -1;
-}
-
-static struct store_merge_input as_input(char *word, char **labs)
-{
-    size_t i = 0;
-    while (labs[i] && labs[i] != word)
-        i++;
-    if (!labs[i])
-        return (struct store_merge_input){word, NULL};
-    char *equals = strchr(word, '=');
-    *equals = '\0';
-    return (struct store_merge_input){equals + 1, word};
-}
-
 static void print_counts(const struct store_merge_desc *desc, const struct store_merge_counts *counts)
 {
     printf("%s: %zu %s, %lld %s, %lld %s; %lld %s counted once.\n", desc->output, desc->input_count,
@@ -87,13 +48,13 @@ static int merge(const struct command *command, int argc, char **argv, struct st
     const struct option options[] = {{"-o", OPTION_TEXT, &desc.output},
                                      {"--new-protocol", OPTION_FLAG, &desc.new_protocol},
                                      {"--json", OPTION_FLAG, &json}};
-    int count = 0, code = take_labs(command, &argc, argv, labs);
+    int count = 0, code = labs_take(command, &argc, argv, labs);
     if (code < 0)
         code = arguments_parse(command, argc, argv, options, sizeof options / sizeof options[0], &count);
     if (code >= 0)
         return code;
     for (int i = 0; i < count; i++)
-        inputs[desc.input_count++] = as_input(argv[i], labs);
+        inputs[desc.input_count++] = labs_input(argv[i], labs);
     if (desc.input_count == 0)
         return command_fail(command, EXIT_USAGE, "needs at least one study file; see --help");
     if (!desc.output)

@@ -172,7 +172,9 @@ if len(sys.argv) > 2:
     if left:
         faults.append(f"gaze: {len(left)} recordings are not in the study file")
     for table_name, key, kind in (("choice", "answer", "choice"), ("rating", "answer", "rating"),
-                                  ("response", "answer", "response"), ("exposure", "trial_type", "exposure")):
+                                  ("response", "answer", "response"), ("exposure", "trial_type", "exposure"),
+                                  ("adjust_step", "trial_type", "adjust_step"),
+                                  ("staircase_step", "answer", "staircase_step")):
         written = sum(1 for n in names if n.endswith("_beh.tsv" if key == "answer" else "_events.tsv")
                       for row in table(n)[1] if row[key] == kind)
         count = db.execute(f"SELECT count(*) FROM {table_name}").fetchone()[0]

@@ -1,6 +1,7 @@
 // fovstats export --format bids: the gaze keeps the published rules and every bit, events are those of `gaze
 // --events`, planted faults are found, several files count a session once.
 #include "program.h"
+#include "staircase_file.h"
 #include "study_file.h"
 
 #include <setjmp.h>
@@ -151,6 +152,45 @@ static void several_files_count_a_session_once(void **state)
     expect_done(SHELL("test \"$(ls joined | tr '\\n' ' ')\" = 'bids psych-ds ' && test ! -e joined.part"));
 }
 
+static void staircases_are_answers(void **state)
+{
+    (void)state;
+    staircase_file_make("t.db");
+    expect_done(EXPORT("t.db", "-o", "stairs", "--format", "bids"));
+    expect_done(RUN("/usr/bin/env", "python3", rules, "stairs", "t.db"));
+    expect_done(SHELL("cat stairs/sub-*/ses-*/beh/*_beh.tsv | grep -q staircase_step"));
+}
+
+// A session that was resumed has two runs, each with its own time 0; their samples may even alternate in the
+// file.
+static void a_resumed_session_has_two_runs(void **state)
+{
+    (void)state;
+    expect_done(RUN(BUILD_DIR "/tests/gaze_study", "u.db", "1", "2", "3", "120", "0"));
+    study_file_sql("u.db",
+                   "INSERT INTO segment SELECT 99, session_id, started_at, 0, clock, boot_id, app_version, "
+                   "'resume' FROM segment WHERE id = 1");
+    study_file_sql("u.db", "UPDATE gaze SET segment_id = 99 WHERE id / 100 % 2 = 1");
+    expect_done(EXPORT("u.db", "-o", "u", "--simulated", "--format", "bids"));
+    expect_done(RUN("/usr/bin/env", "python3", rules, "u", "u.db"));
+    expect_done(SHELL("test $(ls u/sub-*/ses-1/beh/*run-2_recording-eye3_physio.tsv.gz | wc -l) = 1"));
+}
+
+static void laboratories_keep_their_people(void **state)
+{
+    (void)state;
+    study_file_make("l.db", &(struct study_desc){.pooled = false});
+    study_file_make("m.db", &(struct study_desc){.pooled = false});
+    study_file_sql("m.db", "UPDATE session SET started_at = replace(started_at, '2026-02', '2026-03')");
+    struct program_result r = EXPORT("l.db", "m.db", "-o", "lm");
+    assert_int_equal(r.code, 1);
+    assert_non_null(strstr(r.err, "tell the files apart with --lab"));
+    program_free(&r);
+    expect_says(EXPORT("l.db", "--lab", "Ulm=m.db", "-o", "lm"), 0, "44 sessions");
+    expect_done(RUN("/usr/bin/env", "python3", rules, "lm/bids"));
+    expect_done(SHELL("test -d lm/bids/sub-UlmP01 && test ! -e lm.part"));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -159,6 +199,9 @@ int main(void)
         cmocka_unit_test(what_has_no_rate_is_said),
         cmocka_unit_test(people_keep_apart),
         cmocka_unit_test(several_files_count_a_session_once),
+        cmocka_unit_test(staircases_are_answers),
+        cmocka_unit_test(a_resumed_session_has_two_runs),
+        cmocka_unit_test(laboratories_keep_their_people),
     };
     return cmocka_run_group_tests_name("export_bids", tests, enter_folder, leave_folder);
 }
