@@ -234,8 +234,11 @@ static const char *missing(const struct planned_data *data, const struct plan *p
 {
     if (data->cell_count == 0)
         return "no such value was recorded that counts";
-    return plan_is(plan, NULL, NULL, "scene") ? "the values are of no scene of their own"
-                                              : "the trials have no factor";
+    if (plan_is(plan, NULL, NULL, "order"))
+        return "no ratings before and after were recorded that count";
+    return plan_is(plan, NULL, NULL, "scene")
+               ? "scenes are no factor of these trials, so that no value is of one scene alone"
+               : "the trials have no factor";
 }
 
 static bool add_plan(struct planned *out, struct sample *sample, const struct plans *plans, size_t index,

@@ -385,6 +385,46 @@ static void expect_of_people(const char *json, const char *place, const char *ke
         fail_msg("%s: %.17g, R %.17g", key, value, known);
 }
 
+// planned.csv has two one-sided tests by R, a line per cell.
+static double planned_margin_p(const char *cell)
+{
+    char line[256], name[64];
+    double p = (double)NAN;
+    FILE *file = reference_open("planned.csv");
+    snprintf(name, sizeof name, "margin cell %s,", cell);
+    while (fgets(line, sizeof line, file))
+        if (strncmp(line, name, strlen(name)) == 0)
+            p = strtod(line + strlen(name), NULL);
+    fclose(file);
+    assert_true(p >= 0);
+    return p;
+}
+
+static void the_protocols_margin_is_the_default(void **state)
+{
+    (void)state;
+    study_file_make("s.db", &(struct study_desc){0});
+    study_file_sql("s.db", "UPDATE session SET settings = json_set(settings, '$.planned', json('[{\"method\":"
+                           "\"binomial\",\"of\":\"choice\",\"per\":\"cell\",\"margin\":0.2}]'))");
+    struct program_result r = FOVSTATS("choices", "s.db", "--json");
+    assert_int_equal(r.code, 0);
+    assert_true(json_after(r.out, "equivalence", "margin") == 0.2);
+    assert_true(reference_close(json_after(r.out, "equivalence", "p_value"), planned_margin_p("0.2"), 1e-12));
+    program_free(&r);
+    r = FOVSTATS("choices", "s.db");
+    assert_non_null(strstr(r.out, "Equivalence: is the preference within 0.3 to 0.7?"));
+    assert_non_null(strstr(r.out, "The margin is the protocol's."));
+    program_free(&r);
+    r = FOVSTATS("choices", "s.db", "--margin", "0.1");
+    assert_non_null(strstr(r.out, "Equivalence: is the preference within 0.4 to 0.6?"));
+    assert_null(strstr(r.out, "The margin is the protocol's."));
+    program_free(&r);
+    r = FOVSTATS("choices", "s.db", "--p", "0.6");
+    assert_null(strstr(r.out, "Equivalence:"));
+    assert_non_null(strstr(r.out, "The protocol's margin of equivalence is about one half"));
+    program_free(&r);
+}
+
 static void several_answers_agree_with_r(void **state)
 {
     (void)state;
@@ -615,6 +655,7 @@ int main(void)
         cmocka_unit_test(unreadable_files),
         cmocka_unit_test(reading_changes_nothing),
         cmocka_unit_test(choices_agree_with_r),
+        cmocka_unit_test(the_protocols_margin_is_the_default),
         cmocka_unit_test(several_answers_agree_with_r),
         cmocka_unit_test(choices_say_what_they_left_out),
         cmocka_unit_test(simulated_is_said),

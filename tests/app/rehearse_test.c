@@ -138,6 +138,10 @@ static void every_kind_without_frames(void **state)
     expect("none", "SELECT count(DISTINCT block) FROM trial WHERE repeat_of IS NOT NULL", "3");
     expect("none", "SELECT count(*) > 0 FROM trial WHERE status = 'skipped'", "1");
     expect("none",
+           "SELECT DISTINCT (settings ->> '$.planned[0].margin') || coalesce(settings ->> "
+           "'$.planned[1].margin', ', none') FROM session",
+           "0.2, none");
+    expect("none",
            "SELECT count(DISTINCT t.block) FROM choice JOIN trial t ON t.id = trial_id WHERE chosen = "
            "'equal'",
            "2");
