@@ -37,10 +37,10 @@ static bool join(struct planned_groups *groups, const struct planned_data *data,
         char words[96] = "";
         if (level)
             level_words(factor, level, true, words);
-        bool named = alone && name_block(data, c);
+        bool named = alone && name_block(data, c), all = strcmp(c->words, "all") == 0;
         snprintf(group.words, sizeof group.words, "%.100s%s%.40s%s%.160s", c->series,
-                 c->series[0] && (level || alone) ? ": " : "", named ? c->block : "", named ? ": " : "",
-                 alone ? c->words : words);
+                 c->series[0] && (level || alone) ? ": " : "", named ? c->block : "", named && !all ? ": " : "",
+                 alone && !(named && all) ? c->words : words);
         if (!sample_grow(&groups->items, groups->count, sizeof groups->items[0]))
             return false;
         groups->items[groups->count++] = group;
