@@ -11,7 +11,7 @@
 #include <string.h>
 
 enum { FONT_PX = 14, NARROW_FONT_PX = 11, ROW_PX = 30, WORDS = 320 };
-enum { LONGEST = 46, NARROW_LONGEST = 22 }; // bytes of words that leave half the figure to its dots
+enum { LONGEST = 46, NARROW_LONGEST = 18 }; // bytes of words that leave half the figure to its dots
 
 size_t figure_three_rows(const struct choices *c)
 {
@@ -86,14 +86,17 @@ bool figure_three(const struct choices *c, const struct figure_desc *desc, char 
     fprintf(
         figure.script,
         "set yrange [%.1f:-0.9]\nset xrange [-1.03:1.03]\nunset ytics\n"
-        "set xtics ('%s1' -1, '%s0.5' -0.5, '0' 0, '0.5' 0.5, '1' 1)\n"
-        "set lmargin %zu\nset rmargin 7\nset tmargin 0.3\nset bmargin 3\n"
+        "set xtics ('\u22121' -1, '%s' -0.5, '0' 0, '%s' 0.5, '1' 1)\n"
+        "set lmargin %zu\nset rmargin 6\nset tmargin 0.3\nset bmargin 3\n"
         "set grid xtics lw 0.6 lt 1 lc rgb '#dfe2e8'\n"
         "set arrow from first 0, graph 0 to first 0, graph 1 nohead front lw 1.2 dt (6,4) lc rgb '" FIGURE_INK
-        "'\n"
-        "set label 'reference preferred' at first -1, graph 0 left offset 0,-2 tc rgb '" FIGURE_INK "'\n"
-        "set label 'test option preferred' at first 1, graph 0 right offset 0,-2 tc rgb '" FIGURE_INK "'\n",
-        (double)rows - 0.3, "\u2212", "\u2212", widest + 2);
+        "'\n",
+        (double)rows - 0.3, desc->narrow ? "" : "\u22120.5", desc->narrow ? "" : "0.5",
+        (desc->narrow ? widest * 3 / 4 : widest) + 2);
+    fprintf(figure.script,
+            "set label 'reference%s' at first -1, graph 0 left offset 0,-2 tc rgb '" FIGURE_INK "'\n"
+            "set label 'test%s' at first 1, graph 0 right offset 0,-2 tc rgb '" FIGURE_INK "'\n",
+            desc->narrow ? "" : " preferred", desc->narrow ? "" : " option preferred");
     fprintf(figure.script,
             "plot 'data' index 0 using 3:1:($4-$3):(0) with vectors nohead lw 3 lc rgb '" FIGURE_BLUE "'"
             ", '' index 0 using 2:1 with points pt 7 ps %s lc rgb '" FIGURE_BLUE "'"

@@ -57,17 +57,19 @@ static void write_equivalence(struct planned_row *row, const struct stat_equival
                                            [STAT_DIFFERENT] = "not shown",
                                            [STAT_WITHIN] = "shown",
                                            [STAT_DIFFERENT_WITHIN] = "shown, beside a difference"};
+    const char *before = row->note[0] ? "; " : "";
+    size_t used = strlen(row->note), room = sizeof row->note - used;
     double low = 50 - 100 * margin, high = 50 + 100 * margin;
     if (isnan(e->p_value))
-        snprintf(row->note, sizeof row->note, "equality within %.4g to %.4g %%: not estimable", low, high);
+        snprintf(row->note + used, room, "%sequality within %.4g to %.4g %%: not estimable", before, low, high);
     else
-        snprintf(row->note, sizeof row->note, "equality within %.4g to %.4g %%: p = %.3g, %s", low, high,
+        snprintf(row->note + used, room, "%sequality within %.4g to %.4g %%: p = %.3g, %s", before, low, high,
                  e->p_value, verdicts[stat_verdict(row->p_value, e->p_value, alpha)]);
 }
 
 // One answer each: answers are independent. Several: people are.
 static void choices_row(struct planned_row *row, const struct stat_person *people, size_t count, double conf,
-                        const struct plan *plan)
+                        const struct plan *plan, double margin)
 {
     struct stat_people sum = stat_people_sum(people, count);
     bool tested = plan_is(plan, "binomial", NULL, NULL), several = sum.most_n > 1;
@@ -87,11 +89,15 @@ static void choices_row(struct planned_row *row, const struct stat_person *peopl
              : isnan(flip.p_value) ? "t of the people\u2019s shares"
                                    : "sign-flip of people",
              sum.k, sum.n);
-    if (isnan(plan->margin) || !(conf > 0.5))
+    double least = several ? flip.least_p : stat_binomial_p(0, sum.n, 0.5, STAT_TWO_SIDED);
+    if (least > 1 - conf)
+        snprintf(row->note, sizeof row->note, "cannot reach %.4g: the smallest p of so few is %.3g", 1 - conf,
+                 least);
+    if (isnan(margin) || !(conf > 0.5))
         return;
-    struct stat_equivalence e = several ? stat_people_equivalence(people, count, 0.5, plan->margin, 1 - conf)
-                                        : stat_binomial_equivalence(sum.k, sum.n, 0.5, plan->margin, 1 - conf);
-    write_equivalence(row, &e, plan->margin, 1 - conf);
+    struct stat_equivalence e = several ? stat_people_equivalence(people, count, 0.5, margin, 1 - conf)
+                                        : stat_binomial_equivalence(sum.k, sum.n, 0.5, margin, 1 - conf);
+    write_equivalence(row, &e, margin, 1 - conf);
 }
 
 // Means over people, tested against 0 where they are differences already.
@@ -141,7 +147,8 @@ static bool group_row(struct planned *out, const struct planned_data *data, cons
     snprintf(row->words, sizeof row->words, "%s", group->words);
     if (data->counts && !plan_is(plan, "paired_t", NULL, NULL)) {
         sum_people(data, group, room);
-        choices_row(row, room, data->sample->person_count, out->conf, plan);
+        choices_row(row, room, data->sample->person_count, out->conf, plan,
+                    group->series[0] ? (double)NAN : plan->margin); // a margin is of preferences
     } else {
         mean_row(row, data, group, plan_is(plan, "paired_t", NULL, NULL), out->conf, room);
     }
@@ -234,8 +241,11 @@ static const char *missing(const struct planned_data *data, const struct plan *p
 {
     if (data->cell_count == 0)
         return "no such value was recorded that counts";
-    return plan_is(plan, NULL, NULL, "scene") ? "the values are of no scene of their own"
-                                              : "the trials have no factor";
+    if (plan_is(plan, NULL, NULL, "order"))
+        return "no ratings before and after were recorded that count";
+    return plan_is(plan, NULL, NULL, "scene")
+               ? "scenes are no factor of these trials, so that no value is of one scene alone"
+               : "the trials have no factor";
 }
 
 static bool add_plan(struct planned *out, struct sample *sample, const struct plans *plans, size_t index,

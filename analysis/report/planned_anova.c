@@ -7,14 +7,15 @@
 #include <string.h>
 
 static bool effect_row(struct planned *out, const struct factorial *f, const struct stat_anova_effect *effect,
-                       const char *series, size_t index)
+                       bool name_block, size_t index)
 {
     struct planned_row *row = planned_row_add(out, index);
     if (!row)
         return false;
     char name[256];
     factorial_effect_name(f, effect->factors, " \u00d7 ", name);
-    snprintf(row->words, sizeof row->words, "%.60s%s%.240s", series, series[0] ? ": " : "", name);
+    snprintf(row->words, sizeof row->words, "%.60s%s%.40s%s%.200s", f->question, f->question[0] ? ": " : "",
+             name_block ? f->block : "", name_block ? ": " : "", name);
     row->people = f->people;
     row->effect_size = true;
     row->estimate = effect->eta2_partial;
@@ -33,11 +34,12 @@ static bool add_effects(struct planned *out, const struct factorial_list *list, 
     for (size_t i = 0; i < list->count; i++) {
         const struct factorial *f = &list->items[i];
         size_t first = out->row_count;
+        bool blocks = strcmp(list->items[0].block, list->items[list->count - 1].block) != 0; // by block
         for (size_t j = 0; !f->refusal[0] && j < f->anova.effect_count; j++) {
             char name[256];
             factorial_effect_name(f, f->anova.effects[j].factors, " ", name);
             if ((!plan_is(plan, NULL, NULL, "scene") || strcmp(name, "scene") == 0) &&
-                !effect_row(out, f, &f->anova.effects[j], f->question, index))
+                !effect_row(out, f, &f->anova.effects[j], blocks, index))
                 return false;
         }
         if (out->row_count > first)
@@ -45,7 +47,8 @@ static bool add_effects(struct planned *out, const struct factorial_list *list, 
         struct planned_row *row = planned_row_add(out, index);
         if (!row)
             return false;
-        snprintf(row->words, sizeof row->words, "%.60s", f->question);
+        snprintf(row->words, sizeof row->words, "%.60s%s%.60s", f->question,
+                 blocks && f->question[0] ? ": " : "", blocks ? f->block : "");
         snprintf(row->note, sizeof row->note, "not computed: %.200s",
                  f->refusal[0] ? f->refusal : "scenes are no factor of it");
     }

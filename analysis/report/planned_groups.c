@@ -12,6 +12,16 @@ static bool differs(const char *a, const char *b)
     return a != b && (!a || !b || strcmp(a, b) != 0);
 }
 
+// Whether the series has cells of other blocks, and the words do not say which.
+static bool name_block(const struct planned_data *data, const struct planned_cell *cell)
+{
+    bool several = false;
+    for (size_t i = 0; i < data->cell_count; i++)
+        several = several || (strcmp(data->cells[i].series, cell->series) == 0 &&
+                              strcmp(data->cells[i].block, cell->block) != 0);
+    return several && cell->factors[0] && strncmp(cell->words, cell->block, strlen(cell->block)) != 0;
+}
+
 // `factor` and `level` NULL where the row is no level's.
 static bool join(struct planned_groups *groups, const struct planned_data *data, size_t cell,
                  const char *factor, const char *level, bool alone)
@@ -27,8 +37,10 @@ static bool join(struct planned_groups *groups, const struct planned_data *data,
         char words[96] = "";
         if (level)
             level_words(factor, level, true, words);
-        snprintf(group.words, sizeof group.words, "%.100s%s%.210s", c->series,
-                 c->series[0] && (level || alone) ? ": " : "", alone ? c->words : words);
+        bool named = alone && name_block(data, c), all = strcmp(c->words, "all") == 0;
+        snprintf(group.words, sizeof group.words, "%.100s%s%.40s%s%.160s", c->series,
+                 c->series[0] && (level || alone) ? ": " : "", named ? c->block : "", named && !all ? ": " : "",
+                 alone && !(named && all) ? c->words : words);
         if (!sample_grow(&groups->items, groups->count, sizeof groups->items[0]))
             return false;
         groups->items[groups->count++] = group;

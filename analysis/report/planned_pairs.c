@@ -10,39 +10,57 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Whether a level of `from` never comes with two levels of `to` in the series.
-static bool fixes(const struct planned_data *data, const char *series, const char *from, const char *to)
+// A factor's level in every cell; NULL where it has none or is of another series.
+static void levels_of(const struct planned_data *data, const char *series, const char *factor, const char **out)
 {
     for (size_t i = 0; i < data->cell_count; i++)
-        for (size_t j = i + 1; j < data->cell_count; j++) {
-            const struct planned_cell *a = &data->cells[i], *b = &data->cells[j];
-            if (strcmp(a->series, series) != 0 || strcmp(b->series, series) != 0)
-                continue;
-            const char *x = planned_level(data, a, from), *y = planned_level(data, b, from),
-                       *u = planned_level(data, a, to), *v = planned_level(data, b, to);
-            if (x && y && u && v && strcmp(x, y) == 0 && strcmp(u, v) != 0)
+        out[i] =
+            strcmp(data->cells[i].series, series) == 0 ? planned_level(data, &data->cells[i], factor) : NULL;
+}
+
+// Whether a level of `from` never comes with two levels of `to`.
+static bool fixes(const char *const *from, const char *const *to, size_t cells)
+{
+    for (size_t i = 0; i < cells; i++)
+        for (size_t j = i + 1; from[i] && to[i] && j < cells; j++)
+            if (from[j] && to[j] && strcmp(from[i], from[j]) == 0 && strcmp(to[i], to[j]) != 0)
                 return false;
-        }
     return true;
 }
 
-// The cell without the compared factor, as a text: equal where cells are otherwise the same.
-static void rest_of(const struct planned_data *data, const struct planned_group *group,
-                    const struct planned_cell *cell, char out[512])
+static bool known_key(const struct sample *sample, size_t factor)
 {
-    out[0] = '\0';
-    if (!group->factor)
-        return;
-    snprintf(out, 512, "%.100s", cell->block);
-    for (size_t i = 0; i < data->sample->factor_count; i++) {
-        const struct sample_factor *f = &data->sample->factors[i];
-        if (strcmp(f->factors, cell->factors) != 0 || strcmp(f->key, group->factor) == 0 ||
-            strcmp(f->key, "trial") == 0 || fixes(data, group->series, group->factor, f->key) ||
-            fixes(data, group->series, f->key, group->factor))
+    for (size_t i = 0; i < factor; i++)
+        if (strcmp(sample->factors[i].key, sample->factors[factor].key) == 0)
+            return true;
+    return false;
+}
+
+// Each cell without the factor compared, as a text: equal where cells are otherwise the same. False where
+// memory ran out.
+static bool fill_rests(const struct planned_data *data, const struct planned_group *group, char (*rests)[512])
+{
+    const struct sample *sample = data->sample;
+    const size_t cells = data->cell_count;
+    const char **room = calloc(2 * cells + 1, sizeof *room), **compared = room, **other = room + cells;
+    for (size_t c = 0; c < cells; c++)
+        snprintf(rests[c], sizeof rests[c], "%.100s", group->factor ? data->cells[c].block : "");
+    if (room && group->factor)
+        levels_of(data, group->series, group->factor, compared);
+    for (size_t i = 0; room && group->factor && i < sample->factor_count; i++) {
+        const char *key = sample->factors[i].key;
+        if (known_key(sample, i) || strcmp(key, group->factor) == 0 || strcmp(key, "trial") == 0)
             continue;
-        size_t used = strlen(out);
-        snprintf(out + used, 512 - used, "|%s=%s", f->key, f->value);
+        levels_of(data, group->series, key, other);
+        if (fixes(compared, other, cells) || fixes(other, compared, cells))
+            continue;
+        for (size_t c = 0; c < cells; c++) {
+            size_t used = strlen(rests[c]);
+            snprintf(rests[c] + used, sizeof rests[c] - used, "|%s=%s", key, other[c] ? other[c] : "");
+        }
     }
+    free(room);
+    return room != NULL;
 }
 
 // A person's mean over the cells of a group with that rest (NULL: any); NaN where there is no value.
@@ -180,8 +198,7 @@ bool planned_pairs(struct planned *out, const struct planned_data *data, const s
     for (size_t i = 0; ok && i < groups->count; i++) {
         const struct planned_group *a = &groups->items[i];
         if (i == 0 || !are_pair(&groups->items[i - 1], a)) // another factor: cells have another rest
-            for (size_t c = 0; c < data->cell_count; c++)
-                rest_of(data, a, &data->cells[c], rests[c]);
+            ok = fill_rests(data, a, rests);
         for (size_t j = i + 1; ok && j < groups->count; j++)
             if (are_pair(a, &groups->items[j])) {
                 ok = add_pair(out, data, a, &groups->items[j], plan, index, rests);

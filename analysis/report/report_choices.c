@@ -196,13 +196,19 @@ static void choices_table(const struct report *r)
 static void choices_notes(const struct report *r)
 {
     const struct choices *c = &r->choices;
-    for (size_t i = 0; i < c->cell_count; i++)
-        if (c->cells[i].equal) {
-            fputs("<p>", r->out);
-            html_printf(r->out, "%s: %" PRId64 " answers \u201cequal\u201d are not part of n.",
-                        c->cells[i].label, c->cells[i].equal);
-            fputs("</p>\n", r->out);
-        }
+    if (c->equal == 0)
+        return;
+    bool first = true;
+    fputs("<p>Answers \u201cequal\u201d are not part of n: ", r->out);
+    for (size_t i = 0; i < c->cell_count; i++) {
+        char words[256];
+        if (c->cells[i].equal == 0)
+            continue;
+        report_cell_words(&c->cells[i], words);
+        html_printf(r->out, "%s%s (%" PRId64 ")", first ? "" : "; ", words, c->cells[i].equal);
+        first = false;
+    }
+    fputs(".</p>\n", r->out);
 }
 
 static void options_sentence(const struct report *r)

@@ -20,7 +20,7 @@ static void equivalence_row(const struct report *r, const struct choice_cell *ce
     report_cell_words(cell, words);
     fputs("<tr>", out);
     html_cell(out, "th scope=\"row\" class=\"word\"", "%s", words);
-    html_cell(out, "td", "%zu", cell->people);
+    html_cell(out, "td", "%zu", stat_people_sum(cell->counts, cell->people).people);
     html_cell(out, "td class=\"word\"", "%s", choice_equivalence_method(cell));
     if (isnan(e.ci.low))
         html_cell(out, "td", "\u2013");
@@ -48,8 +48,10 @@ static void equivalence_table(const struct report *r, double margin)
     for (size_t i = 0; i < r->choices.cell_count; i++)
         if (!r->choices.cells[i].right)
             equivalence_row(r, &r->choices.cells[i], margin);
+    fprintf(out, "</tbody></table></div>\n<p>%s",
+            r->choices.equal ? "Of answers for one of the options; \u201cequal\u201d is none. " : "");
     fputs(
-        "</tbody></table></div>\n<p>p above and below: that the share lies above the lower and below the "
+        "p above and below: that the share lies above the lower and below the "
         "upper end of the margin; p is the larger of both, not adjusted for the number of cells. Only a small "
         "p shows equality, and equality within this margin alone; a large p in the table before does "
         "not.</p>\n",

@@ -108,10 +108,29 @@ static void a_file_is_no_folder(void **state)
     program_free(&r);
 }
 
+// Where "equal" was an answer, the net preferences are drawn; else there is no such figure.
+static void net_preferences_are_drawn_of_three_answers(void **state)
+{
+    (void)state;
+    for (int equal = 0; equal < 2; equal++) {
+        study_file_make("s.db", &(struct study_desc){.equal = equal == 1});
+        struct program_result r = program_run(
+            (const char *const[]){fovstats, "report", "s.db", "-o", "s.html", "--figures", "three", NULL},
+            NULL);
+        assert_int_equal(r.code, 0);
+        program_free(&r);
+        const char *svg = text_of("three", "net_preference", "svg");
+        assert_true((strstr(svg, "reference preferred") != NULL) == (equal == 1));
+        // 6 of 22 chose the test option, 15 the reference, one "equal": -9 / 22
+        assert_true((strstr(svg, "\u22120.41") != NULL) == (equal == 1));
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(both_kinds_open_alone),
+        cmocka_unit_test(net_preferences_are_drawn_of_three_answers),
         cmocka_unit_test(real_data_is_not_branded),
         cmocka_unit_test(pdf_where_it_can_be_made),
         cmocka_unit_test(a_file_is_no_folder),

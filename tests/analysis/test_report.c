@@ -218,10 +218,29 @@ static void every_planned_analysis_is_named(void **state)
     assert_int_equal(count(page, "class=\"word\">paired t of choice, per factor</th>"), 1);
     assert_int_equal(count(page, "class=\"word\">binomial of choice, per study</th>"), 1);
     assert_non_null(strstr(page, "Levels of factors, in cells that are otherwise the same"));
+    assert_null(strstr(page, "Equivalence: is the share")); // no margin was planned
     free(page);
     page = report(&(struct study_desc){.simulated = false});
     assert_null(strstr(page, "Blocks"));
     assert_non_null(strstr(page, "The protocol planned none, or an earlier version recorded the sessions."));
+    free(page);
+}
+
+// The section on choices has both one-sided tests of each cell; 6 and 4 show no equality within 30 to 70 %.
+static void a_planned_margin_is_tested(void **state)
+{
+    (void)state;
+    study_file_make("s.db", &(struct study_desc){.simulated = false});
+    study_file_sql("s.db", "UPDATE session SET settings = json_set(settings, '$.planned', json('[{\"method\":"
+                           "\"binomial\",\"of\":\"choice\",\"per\":\"cell\",\"margin\":0.2}]'))");
+    const char *argv[] = {fovstats, "report", "s.db", "-o", "r.html", NULL};
+    struct program_result r = program_run(argv, NULL);
+    assert_int_equal(r.code, 0);
+    program_free(&r);
+    char *page = slurp("r.html");
+    assert_int_equal(count(page, "Equivalence: is the share of choices within 30 to 70&nbsp;%"), 1);
+    assert_int_equal(count(page, "<td class=\"word\">exact binomial</td>"), 2);
+    assert_null(strstr(page, "equality within the margin is shown"));
     free(page);
 }
 
@@ -437,6 +456,7 @@ int main(void)
         cmocka_unit_test(the_same_twice),
         cmocka_unit_test(simulated_is_branded),
         cmocka_unit_test(every_planned_analysis_is_named),
+        cmocka_unit_test(a_planned_margin_is_tested),
         cmocka_unit_test(one_protocol_is_reported),
         cmocka_unit_test(nothing_is_switched_in_sequential_trials),
         cmocka_unit_test(simulated_sessions_beside_people_are_left_out),

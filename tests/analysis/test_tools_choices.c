@@ -10,6 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <cmocka.h>
@@ -217,12 +218,56 @@ static void equivalence_needs_a_margin(void **state)
         program_free(all[i]);
 }
 
+// planned.csv has two one-sided tests by R, a line per cell.
+static double planned_margin_p(const char *cell)
+{
+    char line[256], name[64];
+    double p = (double)NAN;
+    FILE *file = reference_open("planned.csv");
+    snprintf(name, sizeof name, "margin cell %s,", cell);
+    while (fgets(line, sizeof line, file))
+        if (strncmp(line, name, strlen(name)) == 0)
+            p = strtod(line + strlen(name), NULL);
+    fclose(file);
+    assert_true(p >= 0);
+    return p;
+}
+
+static void the_protocols_margin_is_the_default(void **state)
+{
+    (void)state;
+    study_file_make("s.db", &(struct study_desc){0});
+    study_file_sql("s.db", "UPDATE session SET settings = json_set(settings, '$.planned', json('[{\"method\":"
+                           "\"binomial\",\"of\":\"choice\",\"per\":\"cell\",\"margin\":0.2}]'))");
+    struct program_result r = FOVSTATS("choices", "s.db", "--json");
+    assert_int_equal(r.code, 0);
+    assert_true(said_after(r.out, "equivalence", "margin") == 0.2);
+    assert_true(reference_close(said_after(r.out, "equivalence", "p_value"), planned_margin_p("0.2"), 1e-12));
+    program_free(&r);
+    r = FOVSTATS("choices", "s.db");
+    assert_non_null(strstr(r.out, "Equivalence: is the preference within 0.3 to 0.7?"));
+    assert_non_null(strstr(r.out, "The margin is the protocol's."));
+    program_free(&r);
+    r = FOVSTATS("choices", "s.db", "--margin", "0.1");
+    assert_non_null(strstr(r.out, "Equivalence: is the preference within 0.4 to 0.6?"));
+    assert_null(strstr(r.out, "The margin is the protocol's."));
+    program_free(&r);
+    r = FOVSTATS("choices", "s.db", "--p", "0.6");
+    assert_null(strstr(r.out, "Equivalence:"));
+    assert_non_null(strstr(r.out, "The protocol's margin of equivalence is about one half"));
+    program_free(&r);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(choices_agree_with_r),         cmocka_unit_test(choices_say_what_they_left_out),
-        cmocka_unit_test(several_answers_agree_with_r), cmocka_unit_test(right_answers_are_no_preferences),
-        cmocka_unit_test(labels_tell_cells_apart),      cmocka_unit_test(equivalence_needs_a_margin),
+        cmocka_unit_test(choices_agree_with_r),
+        cmocka_unit_test(choices_say_what_they_left_out),
+        cmocka_unit_test(several_answers_agree_with_r),
+        cmocka_unit_test(right_answers_are_no_preferences),
+        cmocka_unit_test(labels_tell_cells_apart),
+        cmocka_unit_test(equivalence_needs_a_margin),
+        cmocka_unit_test(the_protocols_margin_is_the_default),
     };
     return cmocka_run_group_tests(tests, program_enter_folder, program_leave_folder);
 }

@@ -331,6 +331,20 @@ static void what_is_not_known_is_refused(void **state)
     assert_non_null(strstr(result->err, "add lines like 'atrium,ERROR,time_warped:epsilon=0.2'"));
 }
 
+static void a_planned_margin_is_kept(void **state)
+{
+    (void)state;
+    expect_done(command("sed 's/per: cell}/per: cell, margin: 0.15}/' '" SOURCE_DIR
+                        "/tests/app/kinds.yaml' > '%s/margin.yaml'; fovstudy run '%s/margin.yaml' --db "
+                        "'%s/margin.db' --participant p --display none --observer sim:errors=%s/errors.csv",
+                        folder, folder, folder, folder));
+    expect(
+        "margin",
+        "SELECT (settings ->> '$.planned[0].margin') || coalesce(settings ->> '$.planned[1].margin', ', none') "
+        "FROM session",
+        "0.15, none");
+}
+
 static int set_up(void **state)
 {
     (void)state;
@@ -351,6 +365,7 @@ int main(void)
         cmocka_unit_test(it_minds_deadlines_and_every_parameter),
         cmocka_unit_test(interruptions_lose_nothing),
         cmocka_unit_test(what_is_not_known_is_refused),
+        cmocka_unit_test(a_planned_margin_is_kept),
         cmocka_unit_test(every_kind_with_frames),
     };
     return cmocka_run_group_tests(tests, set_up, NULL);
