@@ -1,6 +1,6 @@
 #include "analysis/stats/draw.h"
 
-static uint64_t mix(uint64_t z)
+uint64_t stat_mix(uint64_t z)
 {
     z += UINT64_C(0x9e3779b97f4a7c15); // 2^64 over the golden ratio
     z = (z ^ (z >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
@@ -10,6 +10,6 @@ static uint64_t mix(uint64_t z)
 
 double stat_draw(uint64_t seed, uint64_t replicate, uint64_t index)
 {
-    uint64_t bits = mix(mix(mix(seed) ^ replicate) ^ index);
+    uint64_t bits = stat_mix(stat_mix(stat_mix(seed) ^ replicate) ^ index);
     return ((double)(bits >> 12) + 0.5) * 0x1p-52; // with a bit more the largest would round to 1
 }

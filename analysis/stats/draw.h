@@ -7,6 +7,9 @@
 
 #include <stdint.h>
 
+// The finaliser of SplitMix64 at the next state after z: 64 bits that look random.
+uint64_t stat_mix(uint64_t z);
+
 // Uniform in (0, 1), 52 bits, by seed, replicate and index.
 double stat_draw(uint64_t seed, uint64_t replicate, uint64_t index);
 

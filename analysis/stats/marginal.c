@@ -116,12 +116,16 @@ struct stat_marginal stat_grid_marginal(const double *density, double low, doubl
     return m;
 }
 
-// Lagrange's cubic through the four nodes around `at`.
+// Lagrange's cubic through the four nodes around `at`. Where values fall so steeply that it swings away from
+// the straight line between its neighbours by more than 2, the nodes lie four standard deviations apart or more
+// and the line is all that is known: a swing would put mass where there is none.
 static double between(const double *x, const double *y, size_t count, double at)
 {
-    size_t first = 0, points = count < 4 ? count : 4;
+    size_t first = 0, right = 1, points = count < 4 ? count : 4;
     while (first + points < count && x[first + points / 2] < at)
         first++;
+    while (right + 1 < count && x[right] < at)
+        right++;
     double sum = 0;
     for (size_t i = first; i < first + points; i++) {
         double part = y[i];
@@ -129,7 +133,8 @@ static double between(const double *x, const double *y, size_t count, double at)
             part *= j == i ? 1 : (at - x[j]) / (x[i] - x[j]);
         sum += part;
     }
-    return sum;
+    double line = y[right - 1] + (y[right] - y[right - 1]) * (at - x[right - 1]) / (x[right] - x[right - 1]);
+    return fabs(sum - line) <= 2 ? sum : line;
 }
 
 struct stat_marginal stat_node_marginal(const double *mass, const double *prior, const double *x, size_t count,

@@ -1,7 +1,9 @@
 // Permutation tests: p of random arrangements is (reached + 1) / (draws + 1), since the data is one of them:
 // Phipson, B. & Smyth, G. K. (2010), Statistical Applications in Genetics and Molecular Biology 9, article 39.
-// Random bits: the finaliser of splitmix64 over a counter (Steele, G. L., Lea, D. & Flood, C. H. 2014, OOPSLA).
+// Random bits: SplitMix64 (draw.h) over a counter.
 #include "analysis/stats/permutation.h"
+
+#include "analysis/stats/draw.h"
 
 #include <math.h>
 
@@ -36,9 +38,6 @@ struct stat_permutation stat_permutation_none(void)
 
 uint32_t stat_permutation_below(uint64_t seed, uint64_t counter, uint32_t n)
 {
-    uint64_t z = seed * 0xD1B54A32D192ED03u + (counter + 1) * 0x9E3779B97F4A7C15u;
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
-    z ^= z >> 31;
+    uint64_t z = stat_mix(seed * 0xD1B54A32D192ED03u + counter * 0x9E3779B97F4A7C15u);
     return (uint32_t)((z >> 32) * n >> 32);
 }

@@ -11,9 +11,9 @@
 //     guess, lapse    Beta(1, 10) up to 1/2 where free; else the desc's
 //     eta             Beta(1, 10), on eta itself
 // Differences: reported are means and medians of the marginals, where their program prefers the joint mode;
-// guess, lapse and eta are integrated with Gauss-Legendre nodes and not on an even grid; threshold and width on
-// an even grid laid where the posterior has its mass. Whether a lapse is free or fixed is the desc's word, its
-// bounds else do not matter here.
+// guess, lapse and eta are integrated with Gauss-Legendre nodes and not on an even grid; threshold and ln width
+// on an even grid laid where the posterior has its mass. Whether a lapse is free or fixed is the desc's word,
+// its bounds else do not matter here.
 #ifndef ANALYSIS_STATS_PSYCHOMETRIC_BAYES_H
 #define ANALYSIS_STATS_PSYCHOMETRIC_BAYES_H
 

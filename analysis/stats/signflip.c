@@ -6,6 +6,8 @@
 // about 1e-300.
 #include "analysis/stats/signflip.h"
 
+#include "analysis/stats/coins.h"
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -27,28 +29,24 @@ static int64_t common_divisor(int64_t a, int64_t b)
     return a;
 }
 
-// P(s >= from) of the sums of weights, each with its sign by a fair coin. `chance` has room for total + 1.
-static double upper_tail(const struct stat_person *people, size_t count, int64_t unit, double *chance,
-                         int64_t total, int64_t from)
+// P(s >= from) of the sums of weights, each with its sign by a fair coin. NaN: no memory.
+static double upper_tail(const struct stat_person *people, size_t count, int64_t unit, int64_t total,
+                         int64_t from)
 {
-    int64_t reach = 0;
-    chance[0] = 1;
-    for (int64_t s = 1; s <= total; s++)
-        chance[s] = 0;
-    for (size_t i = 0; i < count; i++) {
-        int64_t w = weight(&people[i]) / unit;
-        if (w == 0)
-            continue;
-        reach += w;
-        for (int64_t s = reach; s >= w; s--)
-            chance[s] = 0.5 * chance[s] + 0.5 * chance[s - w];
-        for (int64_t s = w - 1; s >= 0; s--)
-            chance[s] *= 0.5;
+    double *chance = malloc(((size_t)total + 1) * sizeof *chance), p = 0;
+    uint64_t *weights = malloc(count * sizeof *weights);
+    if (chance && weights) {
+        for (size_t i = 0; i < count; i++)
+            weights[i] = (uint64_t)(weight(&people[i]) / unit);
+        stat_coin_sums(weights, count, chance, (uint64_t)total);
+        for (int64_t s = total; s >= from && s >= 0; s--) // the smallest first
+            p += chance[s];
+    } else {
+        p = (double)NAN;
     }
-    double p = 0;
-    for (int64_t s = total; s >= from && s >= 0; s--) // the smallest first
-        p += chance[s];
-    return p < 1 ? p : 1;
+    free(weights);
+    free(chance);
+    return p;
 }
 
 struct stat_signflip stat_signflip(const struct stat_person *people, size_t count,
@@ -78,11 +76,8 @@ struct stat_signflip stat_signflip(const struct stat_person *people, size_t coun
         seen = -seen;
     if (total > MOST_SUM || (double)total * (double)test.uneven > STAT_SIGNFLIP_MAX_STEPS)
         return test;
-    double *chance = malloc(((size_t)total + 1) * sizeof *chance);
-    if (!chance)
-        return test;
     // 2 s - S >= seen; both have the parity of S
-    test.p_value = fmin(1, sides * upper_tail(people, count, unit, chance, total, (total + seen) / 2));
-    free(chance);
+    double tail = upper_tail(people, count, unit, total, (total + seen) / 2);
+    test.p_value = isnan(tail) ? tail : fmin(1, sides * tail);
     return test;
 }

@@ -7,6 +7,7 @@
 // Noether, G. E. (1967), J. American Statistical Association 62, 184-188.
 #include "analysis/stats/wilcoxon.h"
 
+#include "analysis/stats/coins.h"
 #include "analysis/stats/quantile.h"
 
 #include <Rmath.h>
@@ -50,19 +51,9 @@ static size_t rank(double *d, size_t n, bool pratt, uint64_t *out_ranks, uint64_
 // P(sum = 0) to P(sum = v) of ranks with fair signs; freed by the caller. NULL: no memory.
 static double *distribution(const uint64_t *ranks, size_t n, uint64_t v)
 {
-    uint64_t reached = 0;
-    double *chance = calloc(v + 1, sizeof *chance);
-    if (!chance)
-        return NULL;
-    chance[0] = 1;
-    for (size_t i = 0; i < n; i++) {
-        uint64_t rank = ranks[i];
-        reached = reached + rank < v ? reached + rank : v;
-        for (uint64_t s = reached + 1; s-- > rank;)
-            chance[s] = 0.5 * (chance[s] + chance[s - rank]);
-        for (uint64_t s = 0; s < rank && s <= reached; s++)
-            chance[s] *= 0.5;
-    }
+    double *chance = malloc((v + 1) * sizeof *chance);
+    if (chance)
+        stat_coin_sums(ranks, n, chance, v);
     return chance;
 }
 

@@ -1,4 +1,5 @@
 #include "analysis/stats/binomial.h"
+#include "analysis/tools/alternatives.h"
 #include "analysis/tools/arguments.h"
 #include "analysis/tools/binom_print.h"
 
@@ -47,17 +48,6 @@ static int check_counts(const struct command *command, const char *k_text, const
     return -1;
 }
 
-static int check_alternative(const struct command *command, const char *word, struct binom_request *r)
-{
-    for (int i = 0; i < 3; i++)
-        if (strcmp(binom_alternatives[i], word) == 0) {
-            r->alternative = (enum stat_alternative)i;
-            return -1;
-        }
-    return command_fail(command, EXIT_USAGE, "--alternative is \"%s\" but must be two-sided, less or greater",
-                        word);
-}
-
 static int check_prior(const struct command *command, const char *text, struct binom_request *r)
 {
     char first[64];
@@ -99,7 +89,7 @@ static int run(const struct command *command, int argc, char **argv)
 {
     struct binom_request r = {
         .p0 = 0.5, .conf = 0.95, .margin = (double)NAN, .prior = {1, 1}, .share = (double)NAN, .power = 0.8};
-    const char *word = binom_alternatives[0], *prior = "1,1";
+    const char *word = alternative_words[STAT_TWO_SIDED], *prior = "1,1";
     bool json = false;
     const struct option options[] = {
         {"--p", OPTION_NUMBER, &r.p0},         {"--p0", OPTION_NUMBER, &r.p0},
@@ -114,7 +104,8 @@ static int run(const struct command *command, int argc, char **argv)
     if (count != 2)
         return command_fail(command, EXIT_USAGE, "needs K and N, and nothing else; see --help");
     if ((code = check_counts(command, argv[0], argv[1], &r)) >= 0 || (code = check_numbers(command, &r)) >= 0 ||
-        (code = check_alternative(command, word, &r)) >= 0 || (code = check_prior(command, prior, &r)) >= 0)
+        (code = alternative_parse(command, word, &r.alternative)) >= 0 ||
+        (code = check_prior(command, prior, &r)) >= 0)
         return code;
     if (json)
         binom_print_json(&r);

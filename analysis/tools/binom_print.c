@@ -5,13 +5,12 @@
 #include "analysis/stats/binomial_sample_size.h"
 #include "analysis/stats/equivalence.h"
 #include "analysis/stats/power.h"
+#include "analysis/tools/alternatives.h"
 #include "analysis/tools/binomial_json.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
-
-const char *const binom_alternatives[3] = {"two-sided", "less", "greater"};
 
 static struct stat_equivalence equivalence_of(const struct binom_request *r)
 {
@@ -94,7 +93,7 @@ void binom_print_text(const struct binom_request *r)
 {
     struct stat_binomial t = stat_binomial_test(r->k, r->n, r->p0, r->conf, r->alternative);
     printf("Exact binomial test, %s, of %" PRId64 " in %" PRId64 " against p0 = %.10g\n",
-           binom_alternatives[r->alternative], t.k, t.n, t.p0);
+           alternative_words[r->alternative], t.k, t.n, t.p0);
     printf("  p            ");
     print_by_log(t.log_p);
     putchar('\n');

@@ -17,8 +17,6 @@ struct binom_request {
     double share, power; // true share for power and sample size, NaN: not asked; the power wanted
 };
 
-extern const char *const binom_alternatives[3]; // by enum stat_alternative
-
 // To stdout.
 void binom_print_text(const struct binom_request *request);
 void binom_print_json(const struct binom_request *request);

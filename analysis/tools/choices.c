@@ -1,6 +1,7 @@
 #include "analysis/report/choices.h"
 #include "analysis/report/plans.h"
 
+#include "analysis/tools/alternatives.h"
 #include "analysis/tools/arguments.h"
 #include "analysis/tools/binomial_json.h"
 #include "analysis/tools/choices_effects.h"
@@ -53,8 +54,6 @@ struct parts {
     double margin;           // of equivalence; NaN: none was given or planned
     const char *margin_note; // where it comes from, or why there is none; NULL: nothing to say
 };
-
-static const char *const alternatives[] = {"two-sided", "less", "greater"};
 
 static void print_notes(const struct sample *sample, const struct choices *c)
 {
@@ -119,7 +118,7 @@ static bool print_text(const struct sample *sample, const struct choices *c, con
     printf(
         "\nchosen: answers for the test option, tested against %g, %s; Holm p: adjusted for %zu %s; reaction: "
         "median.\n",
-        c->p0, alternatives[c->alternative], c->tested, c->tested == 1 ? "cell" : "cells");
+        c->p0, alternative_words[c->alternative], c->tested, c->tested == 1 ? "cell" : "cells");
     if (c->toggles.n > 1)
         printf("Toggles over all answers: M %.2f, SD %.2f.\n", c->toggles.mean, c->toggles.sd);
     for (size_t i = 0; equal && i < c->cell_count; i++)
@@ -180,7 +179,7 @@ static bool print_json(const struct sample *sample, const struct choices *c, con
     json_open(&json, NULL, '{');
     study_title_json(&json, sample);
     json_number(&json, "conf", c->conf);
-    json_text(&json, "alternative", alternatives[c->alternative]);
+    json_text(&json, "alternative", alternative_words[c->alternative]);
     json_integer(&json, "cells_tested", (int64_t)c->tested);
     json_open(&json, "cells", '[');
     for (size_t i = 0; i < c->cell_count; i++)
@@ -213,14 +212,7 @@ static int check(const struct command *command, const char *word, struct choices
 {
     if (!(desc->p0 > 0 && desc->p0 < 1))
         return command_fail(command, EXIT_USAGE, "--p is %g but must lie between 0 and 1", desc->p0);
-    int alternative = 0;
-    while (alternative < 3 && strcmp(alternatives[alternative], word) != 0)
-        alternative++;
-    if (alternative == 3)
-        return command_fail(command, EXIT_USAGE,
-                            "--alternative is \"%s\" but must be two-sided, less or greater", word);
-    desc->alternative = (enum stat_alternative)alternative;
-    return -1;
+    return alternative_parse(command, word, &desc->alternative);
 }
 
 static int check_margin(const struct command *command, double margin, double p0, double conf)
@@ -266,7 +258,7 @@ static int run(const struct command *command, int argc, char **argv)
     struct study_arguments arguments;
     struct sample sample;
     struct choices_desc desc = {.p0 = 0.5};
-    const char *word = alternatives[0];
+    const char *word = alternative_words[STAT_TWO_SIDED];
     double margin = (double)NAN;
     const struct option own[] = {{"--p", OPTION_NUMBER, &desc.p0},
                                  {"--alternative", OPTION_TEXT, &word},

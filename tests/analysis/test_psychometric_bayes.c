@@ -110,6 +110,22 @@ static void more_doubt_where_answers_vary_more(void **state)
     assert_true(a.guess.sd == 0 && a.guess.mean == 0);
 }
 
+// The likelihood of a large eta is next to nothing here, beyond what a cubic through its logarithm can follow:
+// a swing of it once put the median at 0.95.
+static void median_lies_where_the_mean_is(void **state)
+{
+    (void)state;
+    const struct stat_answers answers[] = {{1, 6, 12},  {2, 6, 12},  {3, 7, 12},  {4, 8, 12},  {5, 9, 12},
+                                           {6, 10, 12}, {7, 11, 12}, {8, 12, 12}, {9, 12, 12}, {10, 12, 12}};
+    const struct stat_fit_desc desc = {.guess_low = 0.5, .guess_high = 0.5};
+    struct stat_bayes b = stat_psychometric_bayes(answers, 10, &desc);
+    assert_true(fabs(b.eta.median - b.eta.mean) < b.eta.sd);
+    assert_true(b.eta.credible.low < b.eta.mean && b.eta.mean < b.eta.credible.high);
+    const struct stat_answers many[] = {{1, 300, 3000}, {2, 1500, 3000}, {3, 2700, 3000}};
+    b = stat_psychometric_bayes(many, 3, &(struct stat_fit_desc){0});
+    assert_true(b.eta.credible.high < 0.3 && fabs(b.eta.median - b.eta.mean) < 2 * b.eta.sd);
+}
+
 static void nothing_known_is_the_prior(void **state)
 {
     (void)state;
@@ -136,11 +152,9 @@ static void bad_input(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(agrees_with_a_finer_grid),
-        cmocka_unit_test(nodes_are_exact),
-        cmocka_unit_test(more_doubt_where_answers_vary_more),
-        cmocka_unit_test(nothing_known_is_the_prior),
-        cmocka_unit_test(bad_input),
+        cmocka_unit_test(agrees_with_a_finer_grid),           cmocka_unit_test(nodes_are_exact),
+        cmocka_unit_test(more_doubt_where_answers_vary_more), cmocka_unit_test(median_lies_where_the_mean_is),
+        cmocka_unit_test(nothing_known_is_the_prior),         cmocka_unit_test(bad_input),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
