@@ -276,7 +276,8 @@ static void test_structure(void **state)
         {"after", "[foveated, regular]", "[regular, foveated]",
          "p.yaml:34:20: block 'before' and its complement need the same two options in the same order"},
         {"after", "complement_of: before", "complement_of: main",
-         "p.yaml:34:20: a complement is a rate block that rates the other option of an earlier one; block 'main' is "
+         "p.yaml:34:20: a complement is a rate block that rates the other option of an earlier one; block "
+         "'main' is "
          "none"},
         {"after", "complement_of: before", "repetitions: 2",
          "p.yaml:34:5: a rate block of two options is one rating of the option drawn; for repetitions name one "
