@@ -242,7 +242,13 @@ static void others_answer_from_the_measured_errors(void **state)
         command("fovstudy run '%s/studies/protocols/short.yaml' --db '%s/a.db' --participant p2 --observer sim "
                 "--display none",
                 SOURCE_DIR, folder);
-    assert_int_equal(result->status, 1); // another scene stands for the name: its errors were never measured
+    assert_int_equal(result->status, 1); // another scene stands for the name
+    assert_non_null(strstr(result->err, "its sessions showed other scenes (atrium: town:triangles=20000)"));
+    result =
+        command("fovstudy run '%s/studies/protocols/short.yaml' --db '%s/a.db' --participant p2 --observer sim "
+                "--display none --new-protocol",
+                SOURCE_DIR, folder);
+    assert_int_equal(result->status, 1); // and its errors were never measured
     assert_non_null(strstr(result->err, "holds no measured error"));
     result =
         command("fovstudy run '%s/studies/protocols/short.yaml' --db '%s/a.db' --participant p2 --observer sim "
