@@ -14,12 +14,14 @@ static const struct {
     const char *key, *words, *null, *unit;
     double scale, offset;
 } checks[EFFECT_CHECKS] = {
-    [EFFECT_SIDE] = {"side", "slot a chosen", "nobody had the test option in both slots", "%", 100, 50},
-    [EFFECT_FIRST] = {"first", "option shown first chosen", "nobody had the test option both first and second",
-                      "%", 100, 50},
+    [EFFECT_SIDE] = {"side", "slot a chosen", "nobody had the test option in both slots, evenly enough", "%",
+                     100, 50},
+    [EFFECT_FIRST] = {"first", "option shown first chosen",
+                      "nobody had the test option both first and second, evenly enough", "%", 100, 50},
     [EFFECT_LAST] = {"last", "option shown last chosen",
-                     "nobody answered with the test option last on screen and with the other one", "%", 100,
-                     50},
+                     "nobody answered with the test option last on screen and with the other one, evenly "
+                     "enough",
+                     "%", 100, 50},
     [EFFECT_PLACE] = {"place", "test option chosen later in the session minus earlier",
                       "nobody made two choices", "points", 100, 0},
     [EFFECT_REPETITION] = {"repetition", "same slot as before, beyond chance",

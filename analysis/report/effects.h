@@ -4,18 +4,23 @@
 // Counted are the choices of choices.h that are for one of the two options. Each check gives every person one
 // value that is 0 on average where there is no such effect, whatever the person prefers; answers are never
 // pooled over people:
-//   side, first, last  the share of choices of slot a, of the option shown first, and of the one on screen when
-//                      the answer came, less one half: the mean of the shares among trials in which that was
-//                      the test option and among those in which it was not, so that no preference counts
-//   place              share for the test option in the later less that in the earlier half of a person's
-//   choices repetition         share of choices of the same slot as the choice before in the session, less what
-//   is
-//                      expected where the person's choices come in random order
-//   toggles            mean switches before choosing the test option less those before choosing the other
-//   viewing            mean share of viewing time, free of fades, that the test option had where it was chosen,
-//                      less the same where it was not
+//   side, first, last: the share of choices of slot a, of the option shown first, and of the one on screen when
+//   the answer came, less one half: the mean of the shares among trials in which that was the test option and
+//   among those in which it was not, so that no preference counts; of people who had one of the two at least
+//   half as often as the other
+//
+//   place: share for the test option in the later less that in the earlier half of each sitting's choices
+//
+//   repetition: share of choices of the same slot as the choice before in the sitting, less what is expected
+//   where the sitting's choices come in random order
+//
+//   toggles: mean switches before choosing the test option less those before choosing the other
+//
+//   viewing: mean share of viewing time, free of fades, that the test option had where it was chosen, less the
+//   same where it was not
+//
 // Whoever has no such value (always one side, always the same answer) is left out of that check and counted.
-// The test is the exact sign-flip test over people, above STAT_FLIP_VALUES people Student's t; the interval is
+// The test is the sign-flip test over people, above STAT_FLIP_VALUES people Student's t; the interval is
 // t's. Holm's p is over the checks that have a p: the family. Choosing what was looked at last or longest may
 // be a habit of looking at what one prefers: an effect of that kind is no proof of a bias.
 #ifndef ANALYSIS_REPORT_EFFECTS_H

@@ -10,7 +10,7 @@
 // A trial that shows two options, and the frames of each while they arrive: 0 the test option's, 1 the
 // reference's.
 struct trial {
-    int64_t id, condition_id[2];
+    int64_t id, attempt, condition_id[2];
     size_t person, test, reference;
 };
 
@@ -50,6 +50,7 @@ static bool take_trial(void *user, const struct store_trial_row *row)
     if (!sample_grow(&f->trials, f->trial_count, sizeof f->trials[0]))
         return false;
     f->trials[f->trial_count++] = (struct trial){row->id,
+                                                 row->attempt,
                                                  {row->test_id, row->reference_id},
                                                  f->sample->sessions[session].person,
                                                  sample_find_condition(f->sample, f->file, row->test_id),
@@ -118,7 +119,7 @@ static bool take_frame(void *user, const struct store_frame_row *row)
             return false;
         f->trial = f->trial_count ? bsearch(&key, f->trials, f->trial_count, sizeof f->trials[0], by_id) : NULL;
     }
-    int option = !f->trial                                        ? -1
+    int option = !f->trial || f->trial->attempt != row->attempt   ? -1
                  : f->trial->condition_id[0] == row->condition_id ? 0
                  : f->trial->condition_id[1] == row->condition_id ? 1
                                                                   : -1;

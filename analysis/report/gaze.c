@@ -101,9 +101,12 @@ static bool join_people(struct gaze_report *out)
         if (!person || !gaze_record_join(person, record))
             return false;
         gaze_record_close(record, &out->options);
+        person->missing_before += record->missing; // each sitting's at its own rate
     }
-    for (size_t i = 0; i < out->person_count; i++)
+    for (size_t i = 0; i < out->person_count; i++) {
         gaze_record_close(&out->people[i], &out->options);
+        out->people[i].missing = out->people[i].missing_before;
+    }
     if (out->record_count > 1)
         qsort(out->records, out->record_count, sizeof out->records[0], by_session);
     if (out->person_count > 1)

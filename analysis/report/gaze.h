@@ -62,6 +62,7 @@ struct gaze_record {
     struct gaze_target targets[GAZE_TARGETS];
     double rate_hz, nominal_hz;              // measured; NaN where it is not
     double missing;                          // samples that did not come; NaN where the rate is not known
+    double missing_before;                   // of a person, while the sittings are added up
     size_t saccade_count;                    // complete ones; of people only
     double *amplitude, *peak;                // owned
     struct stat_main_sequence main_sequence; // of people only

@@ -92,7 +92,7 @@ void report_effects(const struct report *r)
     html_printf(
         out,
         "Each person gives one value per check, which a preference does not move; people are tested, never "
-        "pooled answers: by the exact sign-flip test, for more than %d people by Student\u2019s t. ",
+        "pooled answers: by the sign-flip test, for more than %d people by Student\u2019s t. ",
         STAT_FLIP_VALUES);
     if (r->effects.tested == 0)
         fputs("These data permit none of the tests. ", out);

@@ -59,6 +59,7 @@ struct store_member_row {
 
 struct store_trial_row {
     int64_t id, session_id, ordinal, repeat_of; // repeat_of 0: none
+    int64_t attempt;                            // the last one
     const char *block, *kind, *scene, *factors, *status;
     int64_t test_id, reference_id; // conditions, through test_slot; 0: none
     // The answer, where there is one:
@@ -91,6 +92,7 @@ struct store_frame_row {
     int64_t start_ns;
     double cpu_us, gpu_us;
     bool late, late_known, simulated_clock;
+    int64_t attempt; // of the trial
     double gaze_age_us, shaded_px;
 };
 

@@ -170,6 +170,7 @@ static bool trial_row(sqlite3_stmt *s, const struct call *call)
         .chosen_first = sqlite3_column_int(s, 15),
         .chosen_a = strcmp(chosen, "a") == 0,
         .correct = sqlite3_column_type(s, 17) == SQLITE_NULL ? -1 : sqlite3_column_int(s, 17),
+        .attempt = sqlite3_column_int64(s, 18),
     };
     if (strcmp(chosen, "equal") == 0)
         row.chosen = '=';
@@ -183,7 +184,7 @@ bool store_read_trials(struct store_reader *reader, store_trial_fn each, void *u
     static const char sql[] =
         "SELECT t.id, t.session_id, t.ordinal, t.repeat_of, t.block, t.kind, t.scene, t.factors, t.option_a,"
         " t.option_b, t.test_slot, c.id, c.chosen, c.reaction_ns / 1e9, c.toggles, c.chosen = t.first_shown, "
-        "t.status, c.correct"
+        "t.status, c.correct, t.attempt"
         " FROM trial t LEFT JOIN choice c ON c.trial_id = t.id ORDER BY t.session_id, t.ordinal";
     return read_rows(reader, sql, trial_row, &(struct call){.user = user, .trial = each});
 }
@@ -242,6 +243,7 @@ static bool frame_row(sqlite3_stmt *s, const struct call *call)
         .gaze_age_us = real(s, 10),
         .shaded_px = real(s, 11),
         .simulated_clock = sqlite3_column_int(s, 12),
+        .attempt = sqlite3_column_int64(s, 13),
     };
     return call->frame(call->user, &row);
 }
@@ -250,7 +252,7 @@ bool store_read_frames(struct store_reader *reader, store_frame_fn each, void *u
 {
     static const char sql[] = "SELECT f.session_id, f.segment_id, f.trial_id, f.number, f.condition_id, "
                               "f.phase, f.start_ns, f.cpu_us,"
-                              " f.gpu_us, f.late, f.gaze_age_us, f.shaded_px, g.clock = 'simulated'"
+                              " f.gpu_us, f.late, f.gaze_age_us, f.shaded_px, g.clock = 'simulated', f.attempt"
                               " FROM frame f JOIN segment g ON g.id = f.segment_id ORDER BY f.id";
     return read_rows(reader, sql, frame_row, &(struct call){.user = user, .frame = each});
 }

@@ -20,10 +20,10 @@ make <- function(study, people, n, prefer = 0.5, side = 0, toggles = function() 
 }
 data <- rbind(make("eight", 8, 9, 0.4), make("sided", 12, 10, 0.5, 0.35), make("one person", 1, 9),
               make("all the same", 6, 5, NA), make("no toggles", 7, 6, 0.5, 0, function() 0),
-              make("one side", 7, 6, 0.6, 0, fixed = TRUE), make("single answers", 10, 1), make("forty", 40, 8, 0.45))
+              make("one side", 7, 6, 0.6, 0, fixed = TRUE), make("single answers", 10, 1), make("many", 64, 8, 0.45))
 
 strata <- function(held, test) {
-  if (!any(held) || all(held)) return(NA)
+  if (2 * min(sum(held), sum(!held)) < max(sum(held), sum(!held))) return(NA)
   (mean(test[held]) + mean(!test[!held])) / 2 - 0.5
 }
 value <- function(check, x) {
