@@ -49,5 +49,7 @@ struct stat_sample_size stat_binomial_equivalence_size(double margin, double p, 
         out.first = reached && out.first == 0 ? n : out.first;
         out.stays = !reached ? 0 : out.stays == 0 ? n : out.stays;
     }
-    return out.stays ? out : (struct stat_sample_size){0, 0};
+    // Shortfalls come back with every step of the critical value, the last of them a few percent beyond the
+    // first number: one so near to the end says nothing about what follows.
+    return out.stays && out.stays <= most - most / 10 ? out : (struct stat_sample_size){0, 0};
 }

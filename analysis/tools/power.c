@@ -50,15 +50,19 @@ static const char help[] =
     "  --power W     also say how many people, of up to 10000 where not for --share alone, reach it (0.8)\n"
     "  --json        one object with the sizes in an array; what is not reached is null\n";
 
+// Where a cell is not everybody's, the sizes are of those who get it.
 static int show_cells(const struct command *command, const struct power_plan *plan, const struct choices *cells,
-                      struct json *json)
+                      size_t everybody, struct json *json)
 {
     int code = -1;
     for (size_t i = 0; i < cells->cell_count && code < 0; i++) {
         const struct choice_cell *cell = &cells->cells[i];
         int64_t *choices = calloc(cell->people + 1, sizeof *choices);
         char name[256];
-        snprintf(name, sizeof name, "%s: %s", cell->block, cell->label);
+        int length = snprintf(name, sizeof name, "%.60s: %.100s", cell->block, cell->label);
+        if (cell->people < everybody)
+            snprintf(name + length, sizeof name - (size_t)length,
+                     " (of the participants who get this cell: %zu of %zu)", cell->people, everybody);
         for (size_t j = 0; choices && j < cell->people; j++)
             choices[j] = cell->counts[j].n;
         code = choices ? power_show(command, plan, &(struct power_case){name, choices, cell->people, 0}, json)
@@ -84,7 +88,7 @@ static int show_rehearsal(const struct command *command, const struct power_plan
             command_fail(command, EXIT_FAILED, "%s: no choice was recorded, so no cell has a design", files[0]);
     if (code < 0) {
         power_begin(plan, sample.data_hash, json);
-        code = show_cells(command, plan, &cells, json);
+        code = show_cells(command, plan, &cells, sample.person_count, json);
     }
     choices_free(&cells);
     sample_free(&sample);

@@ -143,7 +143,8 @@ static void what_cannot_be_estimated_is_said(void **state)
     const char *text[] = {fovstats, "choices", "e.db", NULL};
     struct program_result r = program_run(text, NULL);
     assert_int_equal(r.code, 0);
-    if (!strstr(r.out, "Not estimable: slot a chosen (nobody had the test option in both slots, evenly enough)"))
+    if (!strstr(r.out,
+                "Not estimable: slot a chosen (nobody had the test option in both slots, evenly enough)"))
         fail_msg("%s", r.out);
     program_free(&r);
     make_study("one person");

@@ -108,7 +108,7 @@ static void command_takes_a_rehearsal(void **state)
                                        "22", "--sd", "0.5", "--json");
     assert_int_equal(r.code, 0);
     double several = said_after(r.out, "epsilon 0.2\"", "power"),
-           one = said_after(r.out, "epsilon 0.05\"", "power");
+           one = said_after(r.out, "epsilon 0.05 (of the participants who get this cell: 19 of 22)\"", "power");
     assert_true(several > 0.99 && fabs(one - 0.516797834436943) < 1e-12);
     assert_non_null(strstr(r.out, "\"data_sha256\":\""));
     program_free(&r);
