@@ -33,7 +33,8 @@ void planned_row_t(struct planned_row *row, const struct stat_ttest *t, const ch
         snprintf(row->test, sizeof row->test, "t(%.4g) = %.3f", t->df, t->t);
     else if (isnan(t->ci_low))
         snprintf(row->note, sizeof row->note, "%s",
-                 row->people < 2 ? "one person alone has no interval" : "all values are equal: no interval");
+                 row->people < 2 ? "one person alone has no interval"
+                                 : "no spread, or one person alone: no interval");
 }
 
 // Each person's answers in the cells of a group.

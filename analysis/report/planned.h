@@ -20,6 +20,7 @@ struct planned_row {
     size_t people;              // with a value
     size_t partial;             // of them, those that lack some of its cells
     double estimate, low, high; // NaN where there is none
+    bool difference;            // of two levels
     bool share, effect_size;    // the estimate is a share of choices; partial eta squared, without an interval
     const char *unit;           // "" for none
     char test[96];              // "exact binomial, 6 of 22", "t(21) = 2.10", "" for an estimate

@@ -160,6 +160,7 @@ static bool add_pair(struct planned *out, const struct planned_data *data, const
                                  : b->words;
         snprintf(row->words, sizeof row->words, "%.170s \u2212 %.140s", a->words, second);
         row->share = data->counts;
+        row->difference = true;
         if (plan_is(plan, "paired_t", NULL, NULL))
             within(row, data, a, b, rests, out->conf, room);
         else

@@ -31,7 +31,7 @@ static void number(const struct planned_row *row, const struct plan *plan, doubl
 static void estimate_cells(FILE *out, const struct planned_row *row, const struct plan *plan)
 {
     char estimate[32], low[32], high[32];
-    const char *unit = row->share ? "%" : row->unit;
+    const char *unit = !row->share ? row->unit : row->difference ? "points" : "%";
     number(row, plan, row->estimate, estimate);
     number(row, plan, row->low, low);
     number(row, plan, row->high, high);
