@@ -1,8 +1,9 @@
 #include "analysis/report/frames.h"
 
+#include "analysis/report/level.h"
+
 #include "analysis/stats/quantile.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -92,34 +93,13 @@ static int phase_order(const char *phase)
     return i;
 }
 
-// Words rising, numbers within them falling, as the cells of choices.h are ordered.
-static int label_order(const char *a, const char *b)
-{
-    while (*a && *b) {
-        if (isdigit((unsigned char)*a) && isdigit((unsigned char)*b)) {
-            char *after_a, *after_b;
-            double x = strtod(a, &after_a), y = strtod(b, &after_b);
-            if (x != y)
-                return x < y ? 1 : -1;
-            a = after_a;
-            b = after_b;
-        } else if (*a != *b) {
-            break;
-        } else {
-            a++;
-            b++;
-        }
-    }
-    return (unsigned char)*a - (unsigned char)*b;
-}
-
 static int by_phase(const void *x, const void *y)
 {
     const struct frame_group *a = x, *b = y;
     int p = phase_order(a->phase), q = phase_order(b->phase);
     if (p != q)
         return p - q;
-    int order = label_order(a->label, b->label);
+    int order = level_order(a->label, b->label);
     return order ? order : (a->condition > b->condition) - (a->condition < b->condition);
 }
 

@@ -1,6 +1,8 @@
 #include "analysis/report/level.h"
 
+#include <ctype.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 // DESIGN's suffixes for units, and how people write them.
@@ -62,4 +64,24 @@ void level_all(const struct sample *sample, const char *factors, char out[256])
         level_words(sample->factors[i].key, sample->factors[i].value, true, words);
         snprintf(out + used, 256 - used, "%s%s", used ? ", " : "", words);
     }
+}
+
+int level_order(const char *a, const char *b)
+{
+    while (*a && *b) {
+        if (isdigit((unsigned char)*a) && isdigit((unsigned char)*b)) {
+            char *after_a, *after_b;
+            double x = strtod(a, &after_a), y = strtod(b, &after_b);
+            if (x != y)
+                return x < y ? 1 : -1;
+            a = after_a;
+            b = after_b;
+        } else if (*a != *b) {
+            break;
+        } else {
+            a++;
+            b++;
+        }
+    }
+    return (unsigned char)*a - (unsigned char)*b;
 }

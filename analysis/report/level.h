@@ -16,4 +16,7 @@ void level_join(const struct choice_cell *cell, size_t from, size_t to, char out
 // The same of all factors of a trial, given by their JSON text; "" where there is none.
 void level_all(const struct sample *sample, const char *factors, char out[256]);
 
+// The order of two texts with levels in them: numbers by value, the largest first; the rest by alphabet.
+int level_order(const char *a, const char *b);
+
 #endif

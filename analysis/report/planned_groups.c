@@ -2,7 +2,6 @@
 #include "analysis/report/level.h"
 #include "analysis/report/planned_data.h"
 
-#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -64,34 +63,13 @@ static bool join_levels(struct planned_groups *groups, const struct planned_data
     return true;
 }
 
-// Numbers in texts by their value, the largest first, as in the section on choices; the rest by alphabet.
-static int compare_words(const char *a, const char *b)
-{
-    while (*a && *b) {
-        if (isdigit((unsigned char)*a) && isdigit((unsigned char)*b)) {
-            char *rest_a, *rest_b;
-            double p = strtod(a, &rest_a), q = strtod(b, &rest_b);
-            if (p != q)
-                return q > p ? 1 : -1;
-            a = rest_a;
-            b = rest_b;
-        } else if (*a != *b) {
-            break;
-        } else {
-            a++;
-            b++;
-        }
-    }
-    return (unsigned char)*a - (unsigned char)*b;
-}
-
 static int by_words(const void *x, const void *y)
 {
     const struct planned_group *a = x, *b = y;
     int order = strcmp(a->series, b->series);
     if (order == 0 && a->factor && b->factor)
         order = strcmp(a->factor, b->factor);
-    return order ? order : compare_words(a->words, b->words);
+    return order ? order : level_order(a->words, b->words);
 }
 
 bool planned_groups_load(struct planned_groups *out, const struct planned_data *data, const struct plan *plan)
