@@ -6,7 +6,7 @@
 #ifndef ANALYSIS_REPORT_FRAMES_H
 #define ANALYSIS_REPORT_FRAMES_H
 
-#include "analysis/report/sample.h"
+#include "analysis/report/frames_pairs.h"
 
 struct frame_times {
     size_t count; // frames with a value
@@ -33,7 +33,9 @@ struct frames {
     bool simulated_clock; // of any frame
 };
 
-bool frames_load(struct frames *out, struct sample *sample, char *error, size_t error_size);
+// One pass over the frames for both. Where it fails, both are empty.
+bool frames_load(struct frames *out, struct frames_pairs *pairs, struct sample *sample, double conf,
+                 char *error, size_t error_size);
 void frames_free(struct frames *frames);
 
 #endif

@@ -1,47 +1,13 @@
-#include "analysis/report/frames_pairs.h"
-
+#include "analysis/report/frames_private.h"
 #include "analysis/stats/quantile.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-// A trial that shows two options, and the frames of each while they arrive: 0 the test option's, 1 the
-// reference's.
-struct trial {
-    int64_t id, attempt, condition_id[2];
-    size_t person, test, reference;
-};
-
-struct times {
-    double *ms[2][FRAMES_MEASURES];
-    size_t count[2][FRAMES_MEASURES];
-    size_t frames[2], late[2];
-    bool late_known;
-};
-
-struct value {
-    size_t person, test, reference;
-    enum frames_measure measure;
-    double difference_ms, log_ratio, late;
-};
-
-struct filling {
-    struct sample *sample;
-    size_t file;
-    struct trial *trials; // by id
-    size_t trial_count;
-    const struct trial *trial; // whose frames arrive
-    struct times times;
-    struct value *values; // one per trial
-    size_t value_count;
-    bool simulated_clock;
-};
-
 static bool take_trial(void *user, const struct store_trial_row *row)
 {
-    struct filling *f = user;
+    struct frames_pairing *f = user;
     size_t session = sample_find_session(f->sample, f->file, row->session_id);
     if (session == SAMPLE_NONE || row->test_id == 0 || row->reference_id == 0 ||
         row->test_id == row->reference_id || strcmp(row->kind, "practice") == 0 ||
@@ -49,18 +15,19 @@ static bool take_trial(void *user, const struct store_trial_row *row)
         return true;
     if (!sample_grow(&f->trials, f->trial_count, sizeof f->trials[0]))
         return false;
-    f->trials[f->trial_count++] = (struct trial){row->id,
-                                                 row->attempt,
-                                                 {row->test_id, row->reference_id},
-                                                 f->sample->sessions[session].person,
-                                                 sample_find_condition(f->sample, f->file, row->test_id),
-                                                 sample_find_condition(f->sample, f->file, row->reference_id)};
+    f->trials[f->trial_count++] =
+        (struct frames_trial){row->id,
+                              row->attempt,
+                              {row->test_id, row->reference_id},
+                              f->sample->sessions[session].person,
+                              sample_find_condition(f->sample, f->file, row->test_id),
+                              sample_find_condition(f->sample, f->file, row->reference_id)};
     return true;
 }
 
 static int by_id(const void *x, const void *y)
 {
-    const struct trial *a = x, *b = y;
+    const struct frames_trial *a = x, *b = y;
     return (a->id > b->id) - (a->id < b->id);
 }
 
@@ -70,35 +37,35 @@ static double median(double *values, size_t count)
     return stat_quantile(values, count, 0.5);
 }
 
-static bool close_trial(struct filling *f)
+static bool close_trial(struct frames_pairing *f)
 {
-    struct times *t = &f->times;
+    struct frames_arriving *t = &f->times;
     bool ok = true;
     enum frames_measure m = t->count[0][FRAMES_GPU] && t->count[1][FRAMES_GPU] ? FRAMES_GPU : FRAMES_CPU;
     if (f->trial && t->count[0][m] && t->count[1][m]) {
         double test = median(t->ms[0][m], t->count[0][m]), reference = median(t->ms[1][m], t->count[1][m]);
         ok = sample_grow(&f->values, f->value_count, sizeof f->values[0]);
         if (ok)
-            f->values[f->value_count++] =
-                (struct value){.person = f->trial->person,
-                               .test = f->trial->test,
-                               .reference = f->trial->reference,
-                               .measure = m,
-                               .difference_ms = test - reference,
-                               .log_ratio = test > 0 && reference > 0 ? log(test / reference) : (double)NAN,
-                               .late = t->late_known ? (double)t->late[0] / (double)t->frames[0] -
-                                                           (double)t->late[1] / (double)t->frames[1]
-                                                     : (double)NAN};
+            f->values[f->value_count++] = (struct frames_value){
+                .person = f->trial->person,
+                .test = f->trial->test,
+                .reference = f->trial->reference,
+                .measure = m,
+                .difference_ms = test - reference,
+                .log_ratio = test > 0 && reference > 0 ? log(test / reference) : (double)NAN,
+                .late = t->late_known ? (double)t->late[0] / (double)t->frames[0] -
+                                            (double)t->late[1] / (double)t->frames[1]
+                                      : (double)NAN};
     }
     for (int i = 0; i < 2; i++)
         for (int k = 0; k < FRAMES_MEASURES; k++)
             free(t->ms[i][k]);
-    *t = (struct times){.late_known = true};
+    *t = (struct frames_arriving){.late_known = true};
     f->trial = NULL;
     return ok;
 }
 
-static bool add(struct times *t, int option, enum frames_measure measure, double ms)
+static bool add(struct frames_arriving *t, int option, enum frames_measure measure, double ms)
 {
     if (isnan(ms))
         return true;
@@ -108,13 +75,12 @@ static bool add(struct times *t, int option, enum frames_measure measure, double
     return true;
 }
 
-static bool take_frame(void *user, const struct store_frame_row *row)
+bool frames_pairing_frame(struct frames_pairing *f, const struct store_frame_row *row)
 {
-    struct filling *f = user;
     if (strcmp(row->phase, "stimulus") != 0 || row->condition_id == 0)
         return true;
     if (!f->trial || f->trial->id != row->trial_id) {
-        const struct trial key = {.id = row->trial_id};
+        const struct frames_trial key = {.id = row->trial_id};
         if (!close_trial(f))
             return false;
         f->trial = f->trial_count ? bsearch(&key, f->trials, f->trial_count, sizeof f->trials[0], by_id) : NULL;
@@ -135,7 +101,7 @@ static bool take_frame(void *user, const struct store_frame_row *row)
 
 static int by_pair(const void *x, const void *y)
 {
-    const struct value *a = x, *b = y;
+    const struct frames_value *a = x, *b = y;
     if (a->test != b->test)
         return a->test < b->test ? -1 : 1;
     if (a->reference != b->reference)
@@ -146,7 +112,7 @@ static int by_pair(const void *x, const void *y)
 }
 
 // The values of one pair, person after person, as one mean per person in `means` (three arrays of `count`).
-static size_t person_means(const struct value *values, size_t count, double *means)
+static size_t person_means(const struct frames_value *values, size_t count, double *means)
 {
     size_t people = 0;
     for (size_t from = 0, to; from < count; from = to, people++) {
@@ -170,7 +136,7 @@ static double mean(const double *values, size_t count)
     return sum / (double)count;
 }
 
-static bool add_pair(struct frames_pairs *out, const struct value *values, size_t count, double conf)
+static bool add_pair(struct frames_pairs *out, const struct frames_value *values, size_t count, double conf)
 {
     const struct stat_ttest_options options = {.conf = conf};
     double *means = malloc(3 * count * sizeof *means);
@@ -195,47 +161,40 @@ static bool add_pair(struct frames_pairs *out, const struct value *values, size_
     return true;
 }
 
-static bool read_file(struct filling *f)
+bool frames_pairing_begin(struct frames_pairing *f, size_t file)
 {
-    struct store_reader *reader = f->sample->files[f->file];
-    bool ok = store_read_trials(reader, take_trial, f);
-    if (ok && f->trial_count)
+    f->file = file;
+    f->times.late_known = true;
+    bool ok = store_read_trials(f->sample->files[file], take_trial, f);
+    if (f->trial_count)
         qsort(f->trials, f->trial_count, sizeof f->trials[0], by_id);
-    ok = ok && store_read_frames(reader, take_frame, f);
-    ok = close_trial(f) && ok;
+    return ok;
+}
+
+bool frames_pairing_end(struct frames_pairing *f)
+{
+    bool ok = close_trial(f);
     free(f->trials);
     f->trials = NULL;
     f->trial_count = 0;
     return ok;
 }
 
-bool frames_pairs_load(struct frames_pairs *out, struct sample *sample, double conf, char *error,
-                       size_t error_size)
+bool frames_pairing_finish(struct frames_pairing *f, struct frames_pairs *out, double conf)
 {
-    struct filling f = {.sample = sample, .times = {.late_known = true}};
     bool ok = true;
-    *out = (struct frames_pairs){0};
-    snprintf(error, error_size, "not enough memory");
-    for (; ok && f.file < sample->file_count; f.file++) {
-        ok = read_file(&f);
-        if (!ok && store_reader_error(sample->files[f.file])[0])
-            snprintf(error, error_size, "%s", store_reader_error(sample->files[f.file]));
-    }
-    if (f.value_count)
-        qsort(f.values, f.value_count, sizeof f.values[0], by_pair);
-    for (size_t from = 0, to; ok && from < f.value_count; from = to) {
-        for (to = from; to < f.value_count && f.values[to].test == f.values[from].test &&
-                        f.values[to].reference == f.values[from].reference &&
-                        f.values[to].measure == f.values[from].measure;)
+    if (f->value_count)
+        qsort(f->values, f->value_count, sizeof f->values[0], by_pair);
+    for (size_t from = 0, to; ok && from < f->value_count; from = to) {
+        for (to = from; to < f->value_count && f->values[to].test == f->values[from].test &&
+                        f->values[to].reference == f->values[from].reference &&
+                        f->values[to].measure == f->values[from].measure;)
             to++;
-        ok = add_pair(out, f.values + from, to - from, conf);
+        ok = add_pair(out, f->values + from, to - from, conf);
     }
-    free(f.values);
-    out->simulated_clock = f.simulated_clock;
-    if (ok)
-        error[0] = '\0';
-    else
-        frames_pairs_free(out);
+    free(f->values);
+    f->values = NULL;
+    out->simulated_clock = f->simulated_clock;
     return ok;
 }
 

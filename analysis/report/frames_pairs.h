@@ -28,8 +28,7 @@ struct frames_pairs {
     bool simulated_clock; // of any frame: late frames are then that clock's
 };
 
-bool frames_pairs_load(struct frames_pairs *out, struct sample *sample, double conf, char *error,
-                       size_t error_size);
+// frames_load fills them.
 void frames_pairs_free(struct frames_pairs *pairs);
 
 #endif

@@ -136,9 +136,8 @@ static int run(const struct command *command, int argc, char **argv)
     }
     char error[SAMPLE_ERROR_SIZE];
     struct frames f;
-    struct frames_pairs pairs = {0};
-    if (!frames_load(&f, &sample, error, sizeof error) ||
-        !frames_pairs_load(&pairs, &sample, arguments.conf, error, sizeof error)) {
+    struct frames_pairs pairs;
+    if (!frames_load(&f, &pairs, &sample, arguments.conf, error, sizeof error)) {
         code = command_fail(command, EXIT_FAILED, "%s", error);
     } else if (f.group_count == 0) {
         code =
