@@ -11,9 +11,9 @@
 //     guess, lapse    Beta(1, 10) up to 1/2 where free; else the desc's
 //     eta             Beta(1, 10), on eta itself
 // Differences: reported are means and medians of the marginals, where their program prefers the joint mode;
-// guess, lapse and eta are integrated with Gauss-Legendre nodes and not on an even grid; threshold and ln width
-// on an even grid laid where the posterior has its mass. Whether a lapse is free or fixed is the desc's word,
-// its bounds else do not matter here.
+// the grid (psychometric_grid.h) is laid where the posterior has its mass (psychometric_mass.h) and made finer
+// until sums over every second of its points say that it is fine enough. Whether a lapse is free or fixed is
+// the desc's word, its bounds else do not matter here.
 #ifndef ANALYSIS_STATS_PSYCHOMETRIC_BAYES_H
 #define ANALYSIS_STATS_PSYCHOMETRIC_BAYES_H
 
@@ -34,6 +34,9 @@ struct stat_bayes {
     struct stat_marginal eta;
     // An end of the threshold's interval lies beyond the levels that were shown: how far is the prior's word.
     bool prior_bound;
+    // The grid could not be made fine enough: the numbers may be off by more than half a percent of the
+    // interval.
+    bool rough;
 };
 
 // NaN for bad input, fewer than two levels, more answers than STAT_BAYES_MOST, or no memory. Data of one answer

@@ -10,11 +10,13 @@
 #include <string.h>
 
 enum {
-    FINE = 30,      // cells of the search grid along one side
-    COARSE = 10,    // of a bootstrap replicate's
-    SCAN = 32,      // steps from the search's end to the interval
-    BISECTIONS = 40 // 2^-40 of such a step
+    COARSE = 10,       // cells of a bootstrap replicate's grid along one side
+    COARSE_STARTS = 4, // its peaks that are followed
+    SCAN = 32,         // steps from the search's end to the interval
+    BISECTIONS = 40    // 2^-40 of such a step
 };
+
+static const struct stat_search thorough = {.fine = 30, .thorough = true, .starts = 12};
 
 // Two log-likelihoods are the same within this: a likelihood ratio of one in a million.
 static const double same = 1e-6;
@@ -149,7 +151,7 @@ struct stat_fit stat_psychometric_fit(const struct stat_answers *answers, size_t
     fit.status = look(&p);
     if (fit.status == STAT_FIT_OK) {
         size_t step[2] = {0, 0};
-        struct stat_point best = stat_problem_maximum(&p, FINE, NULL);
+        struct stat_point best = stat_problem_maximum(&p, &thorough);
         fit.status = judge(&p, &best, step);
         fit.log_likelihood = best.log_likelihood;
         fit.deviance = fmax(0, 2 * (stat_problem_saturated(&p) - best.log_likelihood));
@@ -192,7 +194,8 @@ static double replicate_threshold(const struct stat_answers *answers, size_t cou
         return threshold;
     struct stat_point start = {.at = p.logarithmic ? log(fit->function.threshold) : fit->function.threshold,
                                .ln_slope = log(fit->function.slope)};
-    struct stat_point best = stat_problem_maximum(&p, COARSE, &start);
+    struct stat_point best = stat_problem_maximum(
+        &p, &(struct stat_search){.fine = COARSE, .starts = COARSE_STARTS, .start = &start});
     size_t step[2];
     double at_step = stat_problem_step(&p, step), constant = stat_problem_constant(&p),
            most = fmax(best.log_likelihood, fmax(at_step, constant));

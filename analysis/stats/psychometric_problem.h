@@ -37,9 +37,15 @@ double stat_problem_step(struct stat_problem *problem, size_t out_step[2]);
 double stat_problem_constant(const struct stat_problem *problem);
 double stat_problem_saturated(const struct stat_problem *problem);
 
-// The maximum over everything: a grid of `fine` x `fine` and the simplex from its best cells, and from `start`
-// where one is given.
-struct stat_point stat_problem_maximum(struct stat_problem *problem, int fine, const struct stat_point *start);
+struct stat_search {
+    int fine;                       // cells of the grid along the slope, and of the even thresholds; at most 40
+    bool thorough;                  // lay thresholds by the levels too, and follow long ridges
+    int starts;                     // best peaks of the grid that the simplex goes on from; at most 12
+    const struct stat_point *start; // one more, or NULL
+};
+
+// The maximum over everything: a grid, and the simplex from its best peaks. -INFINITY where memory ran out.
+struct stat_point stat_problem_maximum(struct stat_problem *problem, const struct stat_search *search);
 // The maximum with the threshold (or the log of the slope) held.
 double stat_problem_profile(struct stat_problem *problem, bool slope, double value);
 

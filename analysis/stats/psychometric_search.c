@@ -2,14 +2,20 @@
 #include "analysis/stats/psychometric_problem.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 enum {
-    CELLS = 40,   // most cells of the grid along one side
-    STARTS = 4,   // cells that the simplex goes on from
-    MOVES = 400,  // of the simplex
-    PROFILE = 24, // cells along the other parameter
-    GOLDEN = 44   // sections: 0.618^44 is 6e-10
+    CELLS = 40,               // most cells of the grid along one side
+    LEVELS = 64,              // most levels by which thresholds are laid
+    ATS = CELLS + 2 * LEVELS, // most thresholds of the grid
+    STARTS = 12,              // most peaks of the grid that the simplex goes on from
+    MOVES = 400,              // of the simplex
+    PROFILE = 24,             // cells along the other parameter
+    GOLDEN = 44               // sections: 0.618^44 is 6e-10
 };
+
+// Of a ridge: a likelihood ratio of 2.7.
+static const double nearly_as_good = 1;
 
 static double along(double low, double high, int i, int cells)
 {
@@ -62,21 +68,23 @@ static void shrink(struct stat_problem *p, struct corner c[3])
     }
 }
 
-static struct stat_point climb(struct stat_problem *p, struct stat_point start, double size)
+// `size`: of the first simplex along the threshold, `tall` along the slope, as shares of their ranges.
+static struct stat_point climb(struct stat_problem *p, struct stat_point start, double size, double tall,
+                               double enough)
 {
     struct corner c[3];
     double at = (start.at - p->at_low) / (p->at_high - p->at_low),
            ln_slope = (start.ln_slope - p->ln_slope_low) / (p->ln_slope_high - p->ln_slope_low);
     for (int i = 0; i < 3; i++) {
         c[i].at = at + (i == 1 ? (at > 0.5 ? -size : size) : 0);
-        c[i].ln_slope = ln_slope + (i == 2 ? (ln_slope > 0.5 ? -size : size) : 0);
+        c[i].ln_slope = ln_slope + (i == 2 ? (ln_slope > 0.5 ? -tall : tall) : 0);
         ask(p, &c[i]);
     }
     order(c);
     for (int i = 0; i < MOVES; i++) {
         double spread = fmax(fmax(fabs(c[1].at - c[0].at), fabs(c[2].at - c[0].at)),
                              fmax(fabs(c[1].ln_slope - c[0].ln_slope), fabs(c[2].ln_slope - c[0].ln_slope)));
-        if (spread < 1e-9)
+        if (spread < enough)
             break;
         struct corner next = moved(p, c, 2);
         if (next.point.log_likelihood > c[0].point.log_likelihood) {
@@ -99,58 +107,120 @@ static struct stat_point climb(struct stat_problem *p, struct stat_point start, 
 
 // --- the grid ---
 
-static void keep_best(struct stat_point best[STARTS], struct stat_point point)
+struct grid {
+    double at[ATS + 1]; // thresholds, ascending
+    int ats, slopes;    // cells, one less than points
+    double log_likelihood[ATS + 1][CELLS + 1];
+};
+
+static int ascending(const void *x, const void *y)
 {
-    for (int i = 0; i < STARTS; i++)
-        if (point.log_likelihood > best[i].log_likelihood) {
-            struct stat_point next = best[i];
-            best[i] = point;
-            point = next;
+    double a = *(const double *)x, b = *(const double *)y;
+    return (a > b) - (a < b);
+}
+
+// Even ones over the search; where levels are asked for also these and what lies midway between neighbours,
+// since a steep function has a maximum of its own between any two levels.
+static void set_thresholds(const struct stat_problem *p, struct grid *g, bool levels)
+{
+    int count = 0, shown = (int)p->count < LEVELS ? (int)p->count : LEVELS;
+    for (int i = 0; i <= g->slopes; i++)
+        g->at[count++] = along(p->at_low, p->at_high, i, g->slopes);
+    for (int i = 0; levels && i < shown; i++) { // of more levels every so many
+        size_t level = (size_t)i * p->count / (size_t)shown, next = level + 1;
+        g->at[count++] = p->u[level];
+        if (next < p->count && i + 1 < shown)
+            g->at[count++] = (p->u[level] + p->u[next]) / 2;
+    }
+    qsort(g->at, (size_t)count, sizeof g->at[0], ascending);
+    g->ats = count - 1;
+}
+
+// Diagonal neighbours may be higher: a ridge that runs between the points has its top anywhere. Of equal ones,
+// as steep functions have, the first along each dimension is the peak.
+static bool is_peak(const struct grid *g, int i, int j)
+{
+    double here = g->log_likelihood[i][j];
+    return isfinite(here) && (i == 0 || g->log_likelihood[i - 1][j] < here) &&
+           (i == g->ats || g->log_likelihood[i + 1][j] <= here) &&
+           (j == 0 || g->log_likelihood[i][j - 1] < here) &&
+           (j == g->slopes || g->log_likelihood[i][j + 1] <= here);
+}
+
+struct start {
+    struct stat_point point;
+    double size; // of its cell along the threshold, as a share of the search
+};
+
+static struct start start_at(const struct stat_problem *p, const struct grid *g, int i, int j)
+{
+    double whole = p->at_high - p->at_low, left = i > 0 ? g->at[i] - g->at[i - 1] : whole,
+           right = i < g->ats ? g->at[i + 1] - g->at[i] : whole;
+    return (struct start){{.at = g->at[i],
+                           .ln_slope = along(p->ln_slope_low, p->ln_slope_high, j, g->slopes),
+                           .log_likelihood = g->log_likelihood[i][j]},
+                          fmax(fmin(left, right), 1e-3 * whole) / whole};
+}
+
+static void keep_best(struct start *best, int most, struct start start)
+{
+    for (int i = 0; i < most; i++)
+        if (start.point.log_likelihood > best[i].point.log_likelihood) {
+            struct start next = best[i];
+            best[i] = start;
+            start = next;
         }
 }
 
-// The best cell of each column of thresholds, the best columns of all: starts that are apart.
-static int grid(struct stat_problem *p, int fine, struct stat_point best[STARTS])
+// The best peaks of both dimensions together; with ridges, also each slope's best threshold where it is nearly
+// as good as the best of all, for a long ridge may have two tops that the grid does not tell apart. Returns how
+// many.
+static int find_starts(struct stat_problem *p, struct grid *g, struct start *best, int most, bool ridges)
 {
-    struct stat_point column[CELLS + 1];
-    for (int i = 0; i < STARTS; i++)
-        best[i] = (struct stat_point){.log_likelihood = -(double)INFINITY};
-    for (int i = 0; i <= fine; i++) {
-        column[i].log_likelihood = -(double)INFINITY;
-        for (int j = 0; j <= fine; j++) {
-            struct stat_point point = stat_problem_point(p, along(p->at_low, p->at_high, i, fine),
-                                                         along(p->ln_slope_low, p->ln_slope_high, j, fine));
-            if (point.log_likelihood > column[i].log_likelihood)
-                column[i] = point;
+    int top[CELLS + 1] = {0}, count = 0;
+    for (int i = 0; i < most; i++)
+        best[i].point.log_likelihood = -(double)INFINITY;
+    for (int i = 0; i <= g->ats; i++)
+        for (int j = 0; j <= g->slopes; j++) {
+            double slope = along(p->ln_slope_low, p->ln_slope_high, j, g->slopes);
+            g->log_likelihood[i][j] = stat_problem_point(p, g->at[i], slope).log_likelihood;
+            top[j] = g->log_likelihood[i][j] > g->log_likelihood[top[j]][j] ? i : top[j];
         }
-    }
-    for (int i = 0; i <= fine; i++) {
-        double here = column[i].log_likelihood;
-        bool peak = (i == 0 || here >= column[i - 1].log_likelihood) &&
-                    (i == fine || here >= column[i + 1].log_likelihood);
-        if (peak && isfinite(here))
-            keep_best(best, column[i]);
-    }
-    int count = 0;
-    while (count < STARTS && isfinite(best[count].log_likelihood))
+    for (int i = 0; i <= g->ats; i++)
+        for (int j = 0; j <= g->slopes; j++)
+            if (is_peak(g, i, j))
+                keep_best(best, most, start_at(p, g, i, j));
+    while (count < most && isfinite(best[count].point.log_likelihood))
         count++;
+    for (int j = 0; ridges && count > 0 && j <= g->slopes; j++)
+        if (!is_peak(g, top[j], j) &&
+            g->log_likelihood[top[j]][j] > best[0].point.log_likelihood - nearly_as_good)
+            best[count++] = start_at(p, g, top[j], j);
     return count;
 }
 
-struct stat_point stat_problem_maximum(struct stat_problem *p, int fine, const struct stat_point *start)
+struct stat_point stat_problem_maximum(struct stat_problem *p, const struct stat_search *search)
 {
-    struct stat_point starts[STARTS + 1];
-    fine = fine > CELLS ? CELLS : fine;
-    int count = grid(p, fine, starts);
-    if (start)
-        starts[count++] = *start;
+    struct start starts[STARTS + CELLS + 2];
     struct stat_point best = {.log_likelihood = -(double)INFINITY};
+    struct grid *g = malloc(sizeof *g);
+    if (!g)
+        return best;
+    g->slopes = search->fine > CELLS ? CELLS : search->fine;
+    set_thresholds(p, g, search->thorough);
+    int most = search->starts < STARTS ? search->starts : STARTS;
+    int count = find_starts(p, g, starts, most, search->thorough);
+    if (search->start)
+        starts[count++] = (struct start){*search->start, 1.0 / g->slopes};
     for (int i = 0; i < count; i++) {
-        struct stat_point top = climb(p, starts[i], 0.5 / fine);
+        struct stat_point top = climb(p, starts[i].point, starts[i].size / 2, 0.5 / g->slopes, 1e-5);
         if (top.log_likelihood > best.log_likelihood)
             best = top;
     }
-    return best.log_likelihood > -(double)INFINITY ? climb(p, best, 0.02) : best; // the simplex may have stuck
+    free(g);
+    for (int i = 0; i < 2 && isfinite(best.log_likelihood); i++) // the simplex may have stuck
+        best = climb(p, best, i ? 0.001 : 0.02, i ? 0.001 : 0.02, 1e-9);
+    return best;
 }
 
 // --- profile ---
