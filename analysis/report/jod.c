@@ -1,5 +1,6 @@
 #include "analysis/report/jod.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -158,4 +159,39 @@ void jod_free(struct jod *jod)
         free(jod->blocks[i].answers);
     free(jod->blocks);
     *jod = (struct jod){0};
+}
+
+// --- in words ---
+
+bool jod_open(const struct stat_jod *s)
+{
+    return isinf(s->interval.low) || isinf(s->interval.high);
+}
+
+void jod_interval_text(const struct stat_jod *s, int digits, char out[64])
+{
+    double low = s->interval.low, high = s->interval.high;
+    out[0] = '\0';
+    if (isnan(low) || isnan(high))
+        return;
+    if (isinf(low) && isinf(high))
+        snprintf(out, 64, "open at both ends");
+    else if (isinf(low))
+        snprintf(out, 64, "below %.*f", digits, high);
+    else if (isinf(high))
+        snprintf(out, 64, "above %.*f", digits, low);
+    else
+        snprintf(out, 64, "%.*f to %.*f", digits, low, digits, high);
+}
+
+const char *jod_reason(const struct stat_jod *s)
+{
+    static const char *const reasons[] = {
+        "", "the reference, 0 by definition",
+        "not estimable: not compared with the reference, nor by way of others",
+        "not estimable without a prior: no chain of answers prefers the reference to it",
+        "not estimable without a prior: no chain of answers prefers it to the reference"};
+    if (s->status == STAT_JOD_OK && s->alike)
+        return "no interval: no difference between people";
+    return s->status == STAT_JOD_OK && s->unreliable ? "interval unreliable" : reasons[s->status];
 }

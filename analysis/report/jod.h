@@ -38,4 +38,10 @@ bool jod_load(struct jod *out, struct sample *sample, double conf, size_t replic
               char *error, size_t error_size);
 void jod_free(struct jod *jod);
 
+// "-1.05 to 0.20", "below 0.20", "above 0.20", "open at both ends"; "" where there is no interval.
+void jod_interval_text(const struct stat_jod *score, int digits, char out[64]);
+bool jod_open(const struct stat_jod *score); // an end of its interval is infinite
+// Why an option has no score or no interval, in words; "" for neither.
+const char *jod_reason(const struct stat_jod *score);
+
 #endif

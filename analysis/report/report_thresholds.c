@@ -129,12 +129,12 @@ static void staircase_words(const struct report *r)
         "fixed at one half (of preferences both asymptotes free); their threshold lies midway between the "
         "asymptotes (75\u00a0%% right without lapses), "
         "which "
-        "is not where a 1-up/2-down staircase settles (70.7\u00a0%%). Likelihood: lapse at most 0.06, profile "
+        "is not where a 1-up/2-down staircase settles (70.7\u00a0%%). Likelihood: lapse at most 0.06 (of "
+        "preferences 0.5), profile "
         "intervals. Bayes: priors of Sch\u00fctt et al. 2016, overdispersed answers. Means and their t "
         "intervals are over people; people without an estimate are not in them, and not by chance. Where "
-        "nobody "
-        "answered twice at a level, people share one function, without intervals: a person\u2019s answers are "
-        "not independent.");
+        "several people answered once each at a level, they share one function, without intervals: a "
+        "person\u2019s answers are not independent.");
     fputs("</p>\n", r->out);
 }
 
@@ -201,6 +201,15 @@ static void report_staircases(const struct report *r)
             report_figure(r, &r->threshold_figures[i],
                           cell->source == THRESHOLD_LEVELS ? levels_caption : figure_caption);
         people_table(r, cell);
+        for (size_t j = 0; j < cell->person_count; j++)
+            if (cell->people[j].bayes.rough) {
+                fputs("<p class=\"note\">", r->out);
+                html_printf(r->out,
+                            "%s: the sum over the posterior did not settle; Bayes may be off by more than "
+                            "0.5\u00a0%% of its interval.",
+                            cell->pooled ? "All people" : r->sample->people[cell->people[j].person].code);
+                fputs("</p>\n", r->out);
+            }
         if (cell->prior_bound && !cell->pooled)
             fprintf(
                 r->out,
@@ -261,14 +270,12 @@ static void report_adjusted(const struct report *r)
 
 static void jod_rows(const struct report *r, const struct jod_block *b)
 {
-    static const char *const notes[] = {
-        "", "the reference", "not estimable: not compared with the reference, nor by way of others",
-        "not estimable without a prior: no chain of answers prefers the reference to it",
-        "not estimable without a prior: no chain of answers prefers it to the reference"};
     FILE *out = r->out;
+    bool open = false;
     for (size_t place = 0; place < b->option_count; place++) {
         size_t i = b->order[place];
         const struct stat_jod *s = &b->scores[i];
+        char interval[64];
         fputs("<tr>", out);
         html_cell(out, "th scope=\"row\" class=\"word\"", "%s", report_label(r, b->options[i]));
         html_cell(out, "td", "%" PRId64 " of %" PRId64, s->won, s->n);
@@ -276,14 +283,20 @@ static void jod_rows(const struct report *r, const struct jod_block *b)
             html_cell(out, "td", "\u2013");
         else
             html_cell(out, "td", "%.2f", s->score);
-        if (isnan(s->interval.low))
-            html_cell(out, "td", "\u2013");
-        else
-            html_cell(out, "td", "%.2f to %.2f", s->interval.low, s->interval.high);
-        html_cell(out, "td class=\"word\"", "%s",
-                  s->status == STAT_JOD_OK && s->unreliable ? "interval unreliable" : notes[s->status]);
+        jod_interval_text(s, 2, interval);
+        html_cell(out, "td", "%s", interval[0] ? interval : "\u2013");
+        html_cell(out, "td class=\"word\"", "%s", jod_reason(s));
         fputs("</tr>\n", out);
+        open = open || jod_open(s);
     }
+    fputs("</tbody></table></div>\n", out);
+    if (open)
+        fprintf(out,
+                "<p class=\"note\">An interval \u201cbelow\u201d or \u201cabove\u201d a number has no other "
+                "end: in more "
+                "than %.3g&nbsp;%% of the resampled studies no chain of answers preferred the option to the "
+                "reference, or none the reference to it.</p>\n",
+                50 * (1 - r->conf));
 }
 
 static void report_jod(const struct report *r)
@@ -292,13 +305,14 @@ static void report_jod(const struct report *r)
     if (r->jod.block_count == 0)
         return;
     report_heading(r, "Preferences on one scale");
-    fputs("<p>Just-objectionable differences (JOD) from the reference, by "
-          "Thurstone\u2019s case V and maximum likelihood: one JOD apart is 75&nbsp;% preference, negative is "
-          "worse. "
-          "Scenes are put together. Intervals by a bootstrap over people. What was preferred always or never "
-          "has no "
-          "place on the scale without a prior, and none is assumed.</p>\n",
-          out);
+    fputs(
+        "<p>Just-objectionable differences (JOD) from the reference, by "
+        "Thurstone\u2019s case V and maximum likelihood: one JOD apart is 75&nbsp;% preference, negative is "
+        "worse. "
+        "Scenes are put together. Intervals by a bootstrap over people. What no chain of answers prefers to "
+        "the "
+        "reference, or the reference to, has no place on the scale without a prior, and none is assumed.</p>\n",
+        out);
     char ci[48];
     snprintf(ci, sizeof ci, "%g\u00a0%% interval", 100 * r->conf);
     const char *const names[] = {"<option", "preferred", "JOD", ci, "<note", NULL};
@@ -310,7 +324,6 @@ static void report_jod(const struct report *r)
         open_table(out, caption, caption);
         headings(out, names);
         jod_rows(r, b);
-        fputs("</tbody></table></div>\n", out);
     }
 }
 

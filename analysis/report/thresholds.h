@@ -15,12 +15,12 @@
 // other factors' levels. Which way the function goes is the sign of the answers' covariance with the level, all
 // people together.
 //
-// People are the unit: their answers are never pooled, but where nobody answered twice at a level. Then a cell
-// of constant levels has one function for all, its answers at one level from different people. Means are over
-// those who have an estimate; how many have none is counted, and whoever prints a mean must print that too.
-// Answers on a scale, and blocks that take "equal", have the staircase's own estimate only. Which way the
-// function goes is what staircases did after a wrong answer (they make it easier) or, without any, after right
-// ones, unless the options say it.
+// People are the unit: their answers are never pooled, but where several people answered and nobody twice at a
+// level. Then a cell of constant levels has one function for all, its answers at one level from different
+// people. Means are over those who have an estimate; how many have none is counted, and whoever prints a mean
+// must print that too. Answers on a scale, and blocks that take "equal", have the staircase's own estimate
+// only. Which way the function goes is what staircases did after a wrong answer (they make it easier) or,
+// without any, after right ones, unless the options say it.
 #ifndef ANALYSIS_REPORT_THRESHOLDS_H
 #define ANALYSIS_REPORT_THRESHOLDS_H
 

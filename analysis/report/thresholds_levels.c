@@ -132,10 +132,11 @@ static bool finish_cell(struct threshold_cell *cell, enum threshold_larger large
         most = levels > most ? levels : most;
     }
     *out_keep = true;
-    if (once && !pool(cell))
-        return false;
-    if (once)
+    if (once && cell->person_count > 1) { // one person's answers have intervals of their own
+        if (!pool(cell))
+            return false;
         most = distinct(&cell->people[0]);
+    }
     *out_keep = most >= (cell->preference ? LEAST_PREFERENCE : LEAST_RIGHT);
     for (size_t i = 0; i < cell->person_count; i++)
         cell->people[i].estimate = (double)NAN; // there is no staircase

@@ -181,17 +181,30 @@ static void draw_answers(const struct stat_fit *fit, const struct stat_answers *
     }
 }
 
-// The threshold of one replicate, NaN where it has none, and its deviance (0 where a constant or a step says
-// all).
+// Where the threshold is if a constant explains the answers: beyond all levels where only one asymptote can be
+// that constant, and nowhere in particular (NaN) where both can, or neither.
+static double beyond(const struct stat_problem *p)
+{
+    double k = 0;
+    for (size_t i = 0; i < p->count; i++)
+        k += p->k[i];
+    double share = k / p->total;
+    bool lower = share <= p->desc.guess_high, upper = share >= 1 - p->desc.lapse_high;
+    if (lower == upper)
+        return (double)NAN;
+    return lower == p->desc.falling ? -(double)INFINITY : (double)INFINITY;
+}
+
+// The threshold of one replicate, infinite where it lies beyond the search and NaN where it has none, and its
+// deviance (0 where a constant or a step says all).
 static double replicate_threshold(const struct stat_answers *answers, size_t count,
                                   const struct stat_fit_desc *desc, const struct stat_fit *fit,
                                   double *out_deviance)
 {
     struct stat_problem p;
-    double threshold = (double)NAN;
     *out_deviance = 0;
     if (!stat_problem_init(&p, answers, count, desc))
-        return threshold;
+        return (double)NAN;
     struct stat_point start = {.at = p.logarithmic ? log(fit->function.threshold) : fit->function.threshold,
                                .ln_slope = log(fit->function.slope)};
     struct stat_point best = stat_problem_maximum(
@@ -200,13 +213,15 @@ static double replicate_threshold(const struct stat_answers *answers, size_t cou
     double at_step = stat_problem_step(&p, step), constant = stat_problem_constant(&p),
            most = fmax(best.log_likelihood, fmax(at_step, constant));
     *out_deviance = fmax(0, 2 * (stat_problem_saturated(&p) - most));
-    double end = 1e-5 * p.range;
-    if (constant < most - same) {
-        if (at_step >= most - same)
-            threshold = stat_problem_level(&p, (p.u[step[0]] + p.u[step[1]]) / 2);
-        else if (best.at > p.at_low + end && best.at < p.at_high - end)
-            threshold = stat_problem_level(&p, best.at);
-    }
+    double end = 1e-5 * p.range, threshold = stat_problem_level(&p, best.at);
+    if (constant >= most - same)
+        threshold = beyond(&p);
+    else if (at_step >= most - same)
+        threshold = stat_problem_level(&p, (p.u[step[0]] + p.u[step[1]]) / 2);
+    else if (best.at <= p.at_low + end)
+        threshold = -(double)INFINITY;
+    else if (best.at >= p.at_high - end)
+        threshold = (double)INFINITY;
     stat_problem_finish(&p);
     return threshold;
 }
@@ -216,6 +231,10 @@ static void set_bootstrap_interval(struct stat_fit_bootstrap *b, double *thresho
 {
     conf = conf == 0 ? 0.95 : conf;
     stat_sort(thresholds, count);
+    for (size_t i = 0; i < count; i++) {
+        b->below += thresholds[i] == -(double)INFINITY;
+        b->above += thresholds[i] == (double)INFINITY;
+    }
     b->threshold.low = stat_quantile(thresholds, count, (1 - conf) / 2);
     b->threshold.high = stat_quantile(thresholds, count, (1 + conf) / 2);
     b->unreliable =

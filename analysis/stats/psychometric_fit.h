@@ -3,8 +3,9 @@
 // Answers are binomial at each level and independent. Asymptotes are fixed where their bounds are equal, and
 // else free between them: fix guess at 1 / m only for questions with a right answer among m; leave both free
 // for preferences. For each threshold and slope the asymptotes have a concave likelihood, which is solved
-// exactly; threshold and slope are searched on a grid, from whose best cells Nelder and Mead's simplex goes on
-// (1965, The Computer Journal 7, 308-313). No start is drawn at random: the same data give the same fit.
+// exactly; threshold and slope are searched on a grid that has every level in it, from whose peaks Nelder and
+// Mead's simplex goes on (1965, The Computer Journal 7, 308-313). No start is drawn at random: the same data
+// give the same fit.
 //
 // Searched are thresholds from one range of levels below the lowest to one above the highest (on the axis), and
 // slopes from 0.1 over that range to 10 over the smallest distance of two levels.
@@ -69,17 +70,18 @@ struct stat_fit stat_psychometric_fit(const struct stat_answers *answers, size_t
                                       const struct stat_fit_desc *desc);
 
 struct stat_fit_bootstrap {
-    size_t replicates, failed; // failed: without a threshold; left out of the interval
-    double deviance_p;         // share of replicates that fit no better, counting the data themselves
-    struct stat_interval threshold;
+    size_t replicates, failed;      // failed: without a threshold; left out of the interval
+    size_t below, above;            // whose threshold lies beyond the search: at minus infinity, at infinity
+    double deviance_p;              // share of replicates that fit no better, counting the data themselves
+    struct stat_interval threshold; // an infinite end is open
     // The interval misses its estimate, or more than 1 in 20 replicates failed. It is not clipped.
     bool unreliable;
 };
 
 // Parametric bootstrap at the levels that were shown, as if the answers had not chosen them: Efron & Tibshirani
 // 1993, chapters 6 and 13, percentile interval; goodness of fit as Wichmann & Hill 2001, p. 1302. Replicates
-// whose best function is a step have its threshold in the middle between the two levels. NaN where the fit is
-// not OK or memory ran out.
+// whose best function is a step have its threshold in the middle between the two levels; those that one of the
+// asymptotes explains have it at infinity. NaN where the fit is not OK or memory ran out.
 struct stat_fit_bootstrap stat_psychometric_bootstrap(const struct stat_answers *answers, size_t count,
                                                       const struct stat_fit_desc *desc,
                                                       const struct stat_fit *fit, size_t replicates,

@@ -129,7 +129,7 @@ static bool maximise(const struct counts *c, const size_t *member, size_t count,
     return false;
 }
 
-// Scores of all options; NaN where there is none.
+// Scores of all options; infinite where answers go one way only, NaN where there are none or the search failed.
 static void scale(const struct counts *c, size_t reference, double *out, enum stat_jod_status *out_status,
                   double *work)
 {
@@ -139,7 +139,10 @@ static void scale(const struct counts *c, size_t reference, double *out, enum st
     set_reach(c, reach);
     for (size_t i = 0; i < c->options; i++) {
         out_status[i] = status_of(reach, i, reference);
-        out[i] = i == reference ? 0 : (double)NAN;
+        out[i] = i == reference                     ? 0
+                 : out_status[i] == STAT_JOD_ALWAYS ? (double)INFINITY
+                 : out_status[i] == STAT_JOD_NEVER  ? -(double)INFINITY
+                                                    : (double)NAN;
         if (out_status[i] == STAT_JOD_OK)
             member[count++] = i;
     }
@@ -185,15 +188,23 @@ static void set_interval(const struct stat_jod_desc *d, double *scores, struct s
 {
     double conf = d->conf == 0 ? 0.95 : d->conf;
     size_t found = 0;
-    for (size_t i = 0; i < d->replicates; i++)
+    for (size_t i = 0; i < d->replicates; i++) {
+        out->below += scores[i] == -(double)INFINITY;
+        out->above += scores[i] == (double)INFINITY;
         if (!isnan(scores[i]))
             scores[found++] = scores[i];
+    }
     stat_sort(scores, found);
     out->failed = d->replicates - found;
+    out->unreliable = 20 * out->failed > d->replicates;
+    if (found == 0)
+        return;
+    out->alike = scores[found - 1] - scores[0] <= 1e-9; // the scores' own precision
+    if (out->alike)
+        return;
     out->interval.low = stat_quantile(scores, found, (1 - conf) / 2);
     out->interval.high = stat_quantile(scores, found, (1 + conf) / 2);
-    out->unreliable = !(out->interval.low <= out->score && out->score <= out->interval.high) ||
-                      20 * out->failed > d->replicates;
+    out->unreliable = out->unreliable || !(out->interval.low <= out->score && out->score <= out->interval.high);
 }
 
 static void bootstrap(const struct stat_jod_desc *d, const struct stat_preference *answers, size_t count,
@@ -247,8 +258,9 @@ bool stat_jod_scale(const struct stat_preference *answers, size_t count, const s
         count_wins(c, answers, count, NULL);
         scale(c, d->reference, score, status, work);
         for (size_t i = 0; i < d->options; i++) {
-            out[i] = (struct stat_jod){
-                .status = status[i], .score = score[i], .interval = {(double)NAN, (double)NAN}};
+            out[i] = (struct stat_jod){.status = status[i],
+                                       .score = isfinite(score[i]) ? score[i] : (double)NAN,
+                                       .interval = {(double)NAN, (double)NAN}};
             for (size_t j = 0; j < d->options; j++) {
                 out[i].won += (int64_t)c->wins[i][j];
                 out[i].n += (int64_t)(c->wins[i][j] + c->wins[j][i]);

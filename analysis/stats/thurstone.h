@@ -10,7 +10,10 @@
 // preferred to the other at least once (Ford, L. R. (1957), American Mathematical Monthly 64(8), part 2,
 // 28-33, whose argument holds for every such model). Perez-Ortiz and Mantiuk put a prior on the differences to
 // get a number all the same; here such an option is not estimable, and says so.
-// Intervals: bootstrap over people, who are the unit: all answers of a person go together.
+// Intervals: bootstrap over people, who are the unit: all answers of a person go together; percentiles (Efron &
+// Tibshirani 1993, chapter 13). A replicate in which no chain prefers the reference to an option puts it at
+// infinity, one in which none prefers it to the reference at minus infinity: such replicates count where they
+// lie, so that an end of the interval may be infinite.
 #ifndef ANALYSIS_STATS_THURSTONE_H
 #define ANALYSIS_STATS_THURSTONE_H
 
@@ -36,11 +39,14 @@ enum stat_jod_status {
 
 struct stat_jod {
     enum stat_jod_status status;
-    int64_t won, n;                // comparisons
-    double score;                  // JOD; NaN unless OK or REFERENCE
-    struct stat_interval interval; // NaN for fewer than two people
-    size_t failed;                 // replicates in which it is not estimable, left out of the interval
-    bool unreliable;               // the interval misses the score, or more than 1 in 20 replicates failed
+    int64_t won, n; // comparisons
+    double score;   // JOD; NaN unless OK or REFERENCE
+    // NaN for fewer than two people, or alike; an infinite end is open.
+    struct stat_interval interval;
+    size_t below, above; // replicates in which it is at minus infinity, at infinity
+    size_t failed;       // in which it is not compared with the reference: left out of the interval
+    bool alike; // every replicate has the same score: people do not differ, and nothing tells how sure it is
+    bool unreliable; // the interval misses the score, or more than 1 in 20 replicates failed
 };
 
 struct stat_jod_desc {

@@ -14,25 +14,36 @@ static const char help[] =
     "Preferences on one scale per block: just-objectionable differences (JOD) from the reference, by "
     "Thurstone's\n"
     "case V and maximum likelihood. One JOD apart is 75 % preference; negative is worse than the reference.\n"
-    "Intervals by a bootstrap over people (1000 replicates, one seed). An option that was preferred always or\n"
-    "never has no maximum of the likelihood: it is not estimable without a prior, and none is put on it.\n"
+    "Intervals by a bootstrap over people (1000 replicates, one seed). Where no chain of answers prefers the\n"
+    "reference to an option, or none prefers it to the reference, the likelihood has no maximum: the option "
+    "is\n"
+    "not estimable without a prior, and none is put on it. Where that is so in more replicates than an end of\n"
+    "the interval leaves out, that end is open: \"below\" or \"above\". People who all answered alike have no\n"
+    "interval.\n"
     "  --conf C     confidence of the intervals (0.95)\n"
     "  --simulated  analyse simulated sessions, which are left out otherwise\n"
     "  --json       one object with the blocks in an array\n"
     "\"Equal\" and answers to questions with a right answer are not part of it.\n";
 
-static const char *reason(const struct stat_jod *s)
+static void note_cell(struct table *t, const struct stat_jod *s, size_t replicates)
 {
-    static const char *const reasons[] = {
-        "", "the reference, 0 by definition", "not estimable: not compared with it, nor by way of others",
-        "not estimable without a prior: always preferred", "not estimable without a prior: never preferred"};
-    return s->status == STAT_JOD_OK && s->unreliable ? "interval unreliable" : reasons[s->status];
+    const struct {
+        const char *what;
+        size_t count;
+    } parts[] = {{"at minus infinity", s->below}, {"at infinity", s->above}, {"not compared", s->failed}};
+    char note[256];
+    size_t used = (size_t)snprintf(note, sizeof note, "%s", jod_reason(s));
+    for (size_t i = 0; s->status == STAT_JOD_OK && i < sizeof parts / sizeof parts[0]; i++)
+        if (parts[i].count)
+            used += (size_t)snprintf(note + used, sizeof note - used, "%s%s in %zu of %zu replicates",
+                                     used ? ", " : "", parts[i].what, parts[i].count, replicates);
+    table_cell(t, "%s", note);
 }
 
-static bool print_block(const struct sample *sample, const struct jod_block *b, double conf)
+static bool print_block(const struct sample *sample, const struct jod *j, const struct jod_block *b)
 {
-    char ci[32];
-    snprintf(ci, sizeof ci, "%g %% CI", 100 * conf);
+    char ci[32], interval[64];
+    snprintf(ci, sizeof ci, "%g %% CI", 100 * j->conf);
     const char *const headings[] = {"<option", "preferred", "of", "JOD", ci, "<note", NULL};
     struct table t;
     table_init(&t, headings);
@@ -46,14 +57,9 @@ static bool print_block(const struct sample *sample, const struct jod_block *b, 
             table_cell(&t, "-");
         else
             table_cell(&t, "%.3f", s->score);
-        if (isnan(s->interval.low))
-            table_cell(&t, "-");
-        else
-            table_cell(&t, "%.3f to %.3f", s->interval.low, s->interval.high);
-        if (s->status == STAT_JOD_OK && s->failed)
-            table_cell(&t, "%s (not estimable in %zu replicates)", s->unreliable ? reason(s) : "", s->failed);
-        else
-            table_cell(&t, "%s", reason(s));
+        jod_interval_text(s, 3, interval);
+        table_cell(&t, "%s", interval[0] ? interval : "-");
+        note_cell(&t, s, j->replicates);
     }
     printf("%s: %zu comparisons by %" PRId64 " people%s\n", b->block, b->answer_count, b->persons,
            b->persons < 2 ? ", too few for intervals" : "");
@@ -99,8 +105,13 @@ static void block_json(struct json *json, const struct sample *sample, const str
         json_number(json, "jod", s->score);
         json_number(json, "ci_low", s->interval.low);
         json_number(json, "ci_high", s->interval.high);
+        json_bool(json, "ci_low_open", isinf(s->interval.low));
+        json_bool(json, "ci_high_open", isinf(s->interval.high));
+        json_integer(json, "replicates_at_minus_infinity", (int64_t)s->below);
+        json_integer(json, "replicates_at_infinity", (int64_t)s->above);
         json_integer(json, "replicates_without", (int64_t)s->failed);
-        json_text(json, "note", reason(s));
+        json_bool(json, "people_alike", s->alike);
+        json_text(json, "note", jod_reason(s));
         json_close(json, '}');
     }
     json_close(json, ']');
@@ -143,7 +154,7 @@ static int run(const struct command *command, int argc, char **argv)
     } else {
         study_title(&sample, "Just-objectionable differences");
         for (size_t i = 0; ok && i < j.block_count; i++)
-            ok = print_block(&sample, &j.blocks[i], j.conf);
+            ok = print_block(&sample, &j, &j.blocks[i]);
         print_notes(&sample, &j);
         code = ok ? command_finish(command) : command_fail(command, EXIT_FAILED, "not enough memory");
     }

@@ -72,10 +72,17 @@ static int own_options(const struct command *command, int *argc, char **argv, st
     return -1;
 }
 
+// An infinite end is open.
 static void interval_cell(struct table *t, double low, double high)
 {
     if (isnan(low) || isnan(high))
         table_cell(t, "-");
+    else if (isinf(low) && isinf(high))
+        table_cell(t, "open at both ends");
+    else if (isinf(low))
+        table_cell(t, "below %.4g", high);
+    else if (isinf(high))
+        table_cell(t, "above %.4g", low);
     else
         table_cell(t, "%.4g to %.4g", low, high);
 }
@@ -201,10 +208,14 @@ static bool print_cell(const struct sample *sample, const struct threshold_cell 
         person_row(&t, sample, cell, &cell->people[i]);
     bool ok = table_print(&t, stdout);
     table_finish(&t);
+    for (size_t i = 0; i < cell->person_count; i++)
+        if (cell->people[i].bayes.rough)
+            printf("%s: the sum over the posterior did not settle; Bayes may be off by more than 0.5 %% of its "
+                   "interval.\n",
+                   cell->pooled ? "All people" : sample->people[cell->people[i].person].code);
     if (cell->pooled)
         puts("Nobody answered twice at a level, so people share one function, without intervals: a person's "
-             "answers "
-             "are not\nindependent.");
+             "answers are not\nindependent.");
     putchar('\n');
     return ok && (cell->pooled || print_means(cell, o->conf));
 }
@@ -253,9 +264,17 @@ static bool print_adjusted(const struct sample *sample, const struct adjusted *a
 
 static void print_notes(const struct sample *sample, const struct thresholds *t, const struct adjusted *a)
 {
-    if (t->cell_count)
-        printf("%s%s; ML: lapse between 0 and 0.06.\n", stat_family_name(t->options.family),
-               t->options.logarithmic ? " on logarithmic levels" : "");
+    bool right = false, preference = false;
+    for (size_t i = 0; i < t->cell_count; i++) {
+        right = right || (!t->cells[i].preference && !t->cells[i].graded);
+        preference = preference || t->cells[i].preference;
+    }
+    if (right || preference)
+        printf("%s%s; ML%s%s%s.\n", stat_family_name(t->options.family),
+               t->options.logarithmic ? " on logarithmic levels" : "",
+               right ? ": guess 0.5, lapse between 0 and 0.06" : "",
+               right && preference ? "; of preferences" : "",
+               preference ? ": guess and lapse between 0 and 0.5" : "");
     if (t->cell_count && t->options.replicates)
         printf("fit p: share of %zu simulated studies that deviate no less from their fit.\n",
                t->options.replicates);

@@ -51,6 +51,10 @@ static void bootstrap_json(struct json *json, const struct stat_fit_bootstrap *b
     json_integer(json, "without_threshold", (int64_t)b->failed);
     json_number(json, "deviance_p", b->deviance_p);
     interval_json(json, "threshold", b->threshold.low, b->threshold.high);
+    json_bool(json, "low_open", isinf(b->threshold.low));
+    json_bool(json, "high_open", isinf(b->threshold.high));
+    json_integer(json, "at_minus_infinity", (int64_t)b->below);
+    json_integer(json, "at_infinity", (int64_t)b->above);
     json_bool(json, "unreliable", b->unreliable);
     json_close(json, '}');
 }
@@ -70,9 +74,11 @@ static void bayes_json(struct json *json, const struct stat_bayes *b)
     json_open(json, "bayes", '{');
     marginal_json(json, "threshold", &b->threshold);
     marginal_json(json, "width", &b->width);
+    marginal_json(json, "guess", &b->guess);
     marginal_json(json, "lapse", &b->lapse);
     marginal_json(json, "eta", &b->eta);
     json_bool(json, "interval_bound_by_prior", b->prior_bound);
+    json_bool(json, "rough", b->rough);
     json_close(json, '}');
 }
 

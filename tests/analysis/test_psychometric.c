@@ -1,4 +1,5 @@
-// Psychometric functions and their fits against R (tests/reference/psychometric.R), and by law.
+// Psychometric functions and their fits against R (tests/reference/psychometric.R, psychometric_multistart.R),
+// and by law.
 #include "analysis/stats/psychometric_fit.h"
 #include "reference.h"
 
@@ -31,14 +32,15 @@ struct row {
     struct stat_fit_desc desc;
     struct stat_answers answers[MOST];
     size_t count;
+    char *rest; // of the line
     double threshold, slope, guess, lapse, log_likelihood, deviance, low, high;
 };
 
-static bool next_row(FILE *file, struct row *row)
+// The columns that every file of data sets begins with.
+static bool next_data(FILE *file, char *line, int size, struct row *row)
 {
-    static char line[16384];
     double levels[MOST], k[MOST], n[MOST];
-    if (!fgets(line, sizeof line, file))
+    if (!fgets(line, size, file))
         return false;
     line[strcspn(line, "\n")] = '\0';
     char *rest = line;
@@ -56,11 +58,20 @@ static bool next_row(FILE *file, struct row *row)
     assert_int_equal(reference_numbers(reference_field(&rest, ','), n, MOST), row->count);
     for (size_t i = 0; i < row->count; i++)
         row->answers[i] = (struct stat_answers){levels[i], (int64_t)k[i], (int64_t)n[i]};
-    snprintf(row->status, sizeof row->status, "%s", reference_field(&rest, ','));
+    row->rest = rest;
+    return true;
+}
+
+static bool next_row(FILE *file, struct row *row)
+{
+    static char line[16384];
+    if (!next_data(file, line, sizeof line, row))
+        return false;
+    snprintf(row->status, sizeof row->status, "%s", reference_field(&row->rest, ','));
     double *values[] = {&row->threshold,      &row->slope,    &row->guess, &row->lapse,
                         &row->log_likelihood, &row->deviance, &row->low,   &row->high};
     for (size_t i = 0; i < 8; i++)
-        *values[i] = reference_number(reference_field(&rest, ','));
+        *values[i] = reference_number(reference_field(&row->rest, ','));
     return true;
 }
 
@@ -134,6 +145,41 @@ static void fits_agree_with_r(void **state)
                   "interval ends %.1e of the range\n",
                   rows, estimable, worst[0], worst[1], worst[2], worst[3]);
     assert_true(rows >= 40 && estimable >= 25);
+}
+
+// Likelihoods with many peaks: ours is never below the best of R's many starts, and where it is the same, so is
+// the threshold, within 1e-4 of the range of levels.
+static void no_maximum_is_missed(void **state)
+{
+    (void)state;
+    static char line[16384];
+    double worst = 0, worst_likelihood = 0;
+    size_t rows = 0, compared = 0;
+    FILE *file = reference_open("psychometric_multistart.csv");
+    assert_non_null(fgets(line, sizeof line, file));
+    static struct row row;
+    for (; next_data(file, line, sizeof line, &row); rows++) {
+        double threshold = reference_number(reference_field(&row.rest, ',')),
+               most = reference_number(reference_field(&row.rest, ',')),
+               range = reference_number(reference_field(&row.rest, ','));
+        struct stat_fit fit = stat_psychometric_fit(row.answers, row.count, &row.desc);
+        const char *family = stat_family_name(row.desc.family);
+        if (!(fit.log_likelihood >= most - 1e-7))
+            fail_msg("%s (%s): log-likelihood %.12g, R %.12g", row.name, family, fit.log_likelihood, most);
+        worst_likelihood = fmax(worst_likelihood, most - fit.log_likelihood);
+        if (isnan(fit.function.threshold) || fit.log_likelihood > most + 1e-7)
+            continue; // a step; or R's simplex stopped before the top
+        double at = fit.function.threshold;
+        double off = fabs((row.desc.family == STAT_WEIBULL ? log(at) : at) - threshold) / range;
+        worst = fmax(worst, off);
+        compared++;
+        if (!(off <= 1e-4))
+            fail_msg("%s (%s): threshold %.9g, R %.9g on the axis", row.name, family, at, threshold);
+    }
+    fclose(file);
+    print_message("%zu sets, at most %.1e below R's likelihood; %zu thresholds within %.1e of the range\n",
+                  rows, worst_likelihood, compared, worst);
+    assert_true(rows >= 50 && compared >= 20);
 }
 
 // --- by law ---
@@ -224,6 +270,28 @@ static void bootstrap_says_when_it_is_unreliable(void **state)
     assert_true(isnan(stat_psychometric_bootstrap(good, 5, &desc, &fit, 400, 1).deviance_p));
 }
 
+// Where all answers of a replicate are yes, its threshold lies below all levels, and above them where larger
+// levels make a yes rarer: an end with more than 2.5 % of these is open.
+static void replicates_beyond_the_levels_open_the_interval(void **state)
+{
+    (void)state;
+    const struct stat_answers few[] = {{1, 0, 1}, {2, 1, 1}, {3, 1, 1}, {4, 1, 1}, {5, 1, 1}};
+    const double all_yes = 0.24577; // R: prod(plogis(1:5 - 1.2)); standard error 0.0215 of 400 replicates
+    struct stat_fit fit = {.function = {.threshold = 1.2, .slope = 0.25}};
+    struct stat_fit_bootstrap b = stat_psychometric_bootstrap(few, 5, &(struct stat_fit_desc){0}, &fit, 400, 1);
+    assert_true((double)b.below / 400 > all_yes - 3 * 0.0215 && b.threshold.low == -(double)INFINITY);
+    assert_true(isfinite(b.threshold.high) && b.threshold.high > 1.2 && b.above + b.below + b.failed < 400);
+    const struct stat_answers mirrored[] = {{5, 0, 1}, {4, 1, 1}, {3, 1, 1}, {2, 1, 1}, {1, 1, 1}};
+    fit.function = (struct stat_psychometric){.falling = true, .threshold = 4.8, .slope = 0.25};
+    b = stat_psychometric_bootstrap(mirrored, 5, &(struct stat_fit_desc){.falling = true}, &fit, 400, 1);
+    assert_true((double)b.above / 400 > all_yes - 3 * 0.0215 && b.threshold.high == (double)INFINITY);
+    // No more right than by guessing: beyond the hard end.
+    const struct stat_fit_desc afc = {.guess_low = 0.5, .guess_high = 0.5, .lapse_high = 0.06};
+    fit.function = (struct stat_psychometric){.threshold = 6, .slope = 1, .guess = 0.5};
+    b = stat_psychometric_bootstrap(few, 5, &afc, &fit, 400, 1);
+    assert_true(b.above > 100 && b.threshold.high == (double)INFINITY);
+}
+
 static void bad_input(void **state)
 {
     (void)state;
@@ -256,8 +324,12 @@ static void bad_input(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(fits_agree_with_r),   cmocka_unit_test(functions_keep_their_word),
-        cmocka_unit_test(units_do_not_matter), cmocka_unit_test(bootstrap_says_when_it_is_unreliable),
+        cmocka_unit_test(fits_agree_with_r),
+        cmocka_unit_test(no_maximum_is_missed),
+        cmocka_unit_test(functions_keep_their_word),
+        cmocka_unit_test(units_do_not_matter),
+        cmocka_unit_test(bootstrap_says_when_it_is_unreliable),
+        cmocka_unit_test(replicates_beyond_the_levels_open_the_interval),
         cmocka_unit_test(bad_input),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
