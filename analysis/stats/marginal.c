@@ -72,7 +72,8 @@ struct stat_marginal stat_even_marginal(const struct stat_even *e, double conf)
         mean += e->mass[i] * value_of(e, x);
         if (!(e->mass[i] > 0))
             continue;
-        l.ln[i] = log(e->mass[i] / e->prior(e->user, x));
+        bool end = i == 0 || i + 1 == e->points;
+        l.ln[i] = log((end ? 2 : 1) * e->mass[i] / e->prior(e->user, x));
         l.from = l.from == e->points ? i : l.from;
         l.to = i + 1;
     }

@@ -12,7 +12,7 @@ enum stat_scale {
 };
 
 struct stat_even {
-    const double *mass; // at the points, by any factor
+    const double *mass; // at the points, by any factor; half of it at the first and last
     double low, high;
     size_t points; // at most 64
     enum stat_scale scale;

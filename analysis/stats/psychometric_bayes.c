@@ -18,7 +18,7 @@ struct prior {
 static double prior(const void *user, double coordinate)
 {
     const struct prior *p = user;
-    return stat_grid_prior(p->problem, p->grid->axis, p->axis, coordinate);
+    return stat_posterior_prior(p->problem, p->grid->axis, p->axis, coordinate);
 }
 
 static struct stat_marginal marginal(const struct stat_problem *p, const struct stat_grid *g, int axis,

@@ -18,11 +18,11 @@ enum {
     FEWEST_ETA = 16
 };
 
-// How far below its maximum a marginal's density still counts as mass: e^-9 is 1e-4, and the ends are laid
+// How far below its maximum a marginal's density still counts as mass: e^-10 is 5e-5, and the ends are laid
 // where the density is lower.
-static const double mass_ln = 9;
+static const double mass_ln = 10;
 // First ends, in standard deviations along the axis; spacing of the final points, in the same.
-static const double first_ends = 4, spacing = 1.1;
+static const double first_ends = 4, spacing = 1.25;
 
 // --- the mode ---
 
@@ -34,7 +34,7 @@ struct search {
 
 static bool try_point(struct search *s, const double point[STAT_GRID_AXES])
 {
-    double there = stat_grid_ln_density(s->problem, s->axes, point);
+    double there = stat_posterior_ln_density(s->problem, s->axes, point);
     if (!(there > s->ln_density))
         return false;
     memcpy(s->point, point, sizeof s->point);
@@ -88,7 +88,7 @@ static void start_at(struct search *s, const double start[STAT_GRID_AXES])
         double low = s->axes[i].low, high = s->axes[i].high, margin = (high - low) / 50;
         s->point[i] = s->axes[i].points == 1 ? low : fmin(fmax(start[i], low + margin), high - margin);
     }
-    s->ln_density = stat_grid_ln_density(s->problem, s->axes, s->point);
+    s->ln_density = stat_posterior_ln_density(s->problem, s->axes, s->point);
     climb(s);
 }
 
@@ -119,9 +119,9 @@ static double deviation(const struct search *s, int axis)
         double point[STAT_GRID_AXES], up, down;
         memcpy(point, s->point, sizeof point);
         point[axis] = s->point[axis] + step;
-        up = s->ln_density - stat_grid_ln_density(s->problem, s->axes, point);
+        up = s->ln_density - stat_posterior_ln_density(s->problem, s->axes, point);
         point[axis] = s->point[axis] - step;
-        down = s->ln_density - stat_grid_ln_density(s->problem, s->axes, point);
+        down = s->ln_density - stat_posterior_ln_density(s->problem, s->axes, point);
         if (fmax(up, down) > 0.5) // half a unit is one standard deviation
             return step / sqrt(fmin(2 * fmax(up, down), 4));
     }
@@ -168,7 +168,7 @@ bool stat_mass_find(struct stat_problem *p, struct stat_grid *g, double *out_top
 {
     struct stat_axis widest[STAT_GRID_AXES];
     double sd[STAT_GRID_AXES];
-    stat_grid_axes(p, widest);
+    stat_posterior_axes(p, widest);
     struct search s = {.problem = p, .axes = widest};
     find_mode(&s);
     *out_top = s.ln_density;

@@ -1,4 +1,4 @@
-// Where the posterior of psychometric_grid.h has its mass.
+// Where the posterior of psychometric_posterior.h has its mass.
 #ifndef ANALYSIS_STATS_PSYCHOMETRIC_MASS_H
 #define ANALYSIS_STATS_PSYCHOMETRIC_MASS_H
 

@@ -160,6 +160,42 @@ static void constant_levels(void **state)
     program_free(&r);
 }
 
+// One person who answered once at each level: the answers are that person's, with intervals, and not pooled.
+static void one_person_is_not_pooled(void **state)
+{
+    (void)state;
+    staircase_file_make("s.db");
+    study_file_sql("s.db",
+                   "DELETE FROM choice WHERE trial_id IN (SELECT t.id FROM trial t JOIN session s ON s.id = "
+                   "t.session_id WHERE t.block = 'liked' AND s.participant_id != (SELECT "
+                   "min(s.participant_id) FROM trial t JOIN session s ON s.id = t.session_id JOIN choice c "
+                   "ON c.trial_id = t.id WHERE t.block = 'liked'))");
+    struct program_result r =
+        FOVSTATS("thresholds", "s.db", "--json", "--bootstrap", "0", "--larger", "easier");
+    const char *liked = AFTER(r.out, "\"block\":\"liked\"");
+    expect(AFTER(liked, "\"people_together\":"), 0, 0);
+    assert_null(strstr(liked, "\"participant\":\"all\""));
+    const char *credible = AFTER(liked, "\"bayes\":{", "\"credible\":[");
+    assert_true(strtod(credible, NULL) < strtod(AFTER(credible, ","), NULL));
+    program_free(&r);
+    r = FOVSTATS("thresholds", "s.db", "--bootstrap", "0");
+    assert_null(strstr(r.out, "people share one function"));
+    program_free(&r);
+}
+
+// What the fits were allowed is said of the kinds that were fitted only.
+static void bounds_are_those_of_what_was_fitted(void **state)
+{
+    (void)state;
+    staircase_file_make("s.db");
+    study_file_sql("s.db", "DELETE FROM staircase_step; DELETE FROM choice WHERE correct IS NOT NULL");
+    struct program_result r = FOVSTATS("thresholds", "s.db", "--bootstrap", "0");
+    assert_int_equal(r.code, 0);
+    assert_non_null(strstr(r.out, "logistic; ML: guess and lapse between 0 and 0.5.\n"));
+    assert_null(strstr(r.out, "0.06"));
+    program_free(&r);
+}
+
 static void adjusted_values(void **state)
 {
     (void)state;
@@ -272,8 +308,33 @@ static void jod_of_a_star(void **state)
            high = strtod(AFTER(r.out, "epsilon 0.2\"", "\"ci_high\":"), NULL);
     assert_true(low < -1.3 && low > -2.2 && high > -0.5 && high < 0.1); // delta method: -1.73 to -0.07
     program_free(&r);
-    study_file_sql("c.db", "UPDATE choice SET chosen = (SELECT test_slot FROM trial WHERE id = trial_id) WHERE "
-                           "trial_id % 10 = 1");
+    // One of 22 for it: in R, pbinom(0, 22, 1 / 22) = 0.359 of the replicates have none.
+    study_file_make("c.db", &(struct study_desc){0});
+    study_file_sql(
+        "c.db",
+        "UPDATE choice SET chosen = CASE (SELECT test_slot FROM trial WHERE id = trial_id) WHEN 'a' THEN 'b' "
+        "ELSE 'a' END; UPDATE choice SET chosen = (SELECT test_slot FROM trial WHERE id = trial_id) WHERE id "
+        "IN "
+        "(SELECT min(c.id) FROM choice c JOIN trial t ON t.id = c.trial_id GROUP BY t.option_a, t.option_b)");
+    r = FOVSTATS("jod", "c.db", "--json");
+    const char *few = AFTER(r.out, "epsilon 0.2\"");
+    expect_text(AFTER(few, "\"ci_low\":"), "null");
+    expect_text(AFTER(few, "\"ci_low_open\":"), "true");
+    expect_text(AFTER(few, "\"ci_high_open\":"), "false");
+    program_free(&r);
+    r = FOVSTATS("jod", "c.db");
+    assert_non_null(strstr(r.out, " below -"));
+    program_free(&r);
+    r = FOVSTATS("report", "c.db", "-o", "c.html");
+    assert_int_equal(r.code, 0);
+    program_free(&r);
+    static char report[1 << 20];
+    FILE *file = fopen("c.html", "r");
+    report[fread(report, 1, sizeof report - 1, file)] = '\0';
+    fclose(file);
+    assert_non_null(strstr(report, "<td>below -"));
+    assert_non_null(strstr(report, "has no other end"));
+    study_file_sql("c.db", "UPDATE choice SET chosen = (SELECT test_slot FROM trial WHERE id = trial_id)");
     r = FOVSTATS("jod", "c.db");
     assert_int_equal(r.code, 0);
     assert_non_null(strstr(r.out, "no chain of answers prefers the reference to it"));
@@ -323,6 +384,8 @@ int main(void)
         cmocka_unit_test(direction_without_wrong_answers),
         cmocka_unit_test(no_direction_no_bayes),
         cmocka_unit_test(constant_levels),
+        cmocka_unit_test(one_person_is_not_pooled),
+        cmocka_unit_test(bounds_are_those_of_what_was_fitted),
         cmocka_unit_test(adjusted_values),
         cmocka_unit_test(text_is_as_it_was),
         cmocka_unit_test(only_ended_staircases_have_estimates),
