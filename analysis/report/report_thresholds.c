@@ -268,7 +268,8 @@ static void report_adjusted(const struct report *r)
 
 // --- preferences on one scale ---
 
-static void jod_rows(const struct report *r, const struct jod_block *b)
+// True where an interval has an open end.
+static bool jod_rows(const struct report *r, const struct jod_block *b)
 {
     FILE *out = r->out;
     bool open = false;
@@ -290,13 +291,7 @@ static void jod_rows(const struct report *r, const struct jod_block *b)
         open = open || jod_open(s);
     }
     fputs("</tbody></table></div>\n", out);
-    if (open)
-        fprintf(out,
-                "<p class=\"note\">An interval \u201cbelow\u201d or \u201cabove\u201d a number has no other "
-                "end: in more "
-                "than %.3g&nbsp;%% of the resampled studies no chain of answers preferred the option to the "
-                "reference, or none the reference to it.</p>\n",
-                50 * (1 - r->conf));
+    return open;
 }
 
 static void report_jod(const struct report *r)
@@ -315,6 +310,7 @@ static void report_jod(const struct report *r)
         out);
     char ci[48];
     snprintf(ci, sizeof ci, "%g\u00a0%% interval", 100 * r->conf);
+    bool open = false;
     const char *const names[] = {"<option", "preferred", "JOD", ci, "<note", NULL};
     for (size_t i = 0; i < r->jod.block_count; i++) {
         const struct jod_block *b = &r->jod.blocks[i];
@@ -323,8 +319,15 @@ static void report_jod(const struct report *r)
                  b->block, b->answer_count, b->persons);
         open_table(out, caption, caption);
         headings(out, names);
-        jod_rows(r, b);
+        open = jod_rows(r, b) || open;
     }
+    if (open)
+        fprintf(
+            out,
+            "<p>An interval \u201cbelow\u201d or \u201cabove\u201d a number has no other end: in more than "
+            "%.3g&nbsp;%% of the resampled studies no chain of answers preferred the option to the reference, "
+            "or none the reference to it, which puts it beyond every number.</p>\n",
+            50 * (1 - r->conf));
 }
 
 void report_thresholds(const struct report *r)

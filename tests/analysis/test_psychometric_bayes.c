@@ -1,7 +1,7 @@
 // Psychometric functions by Bayes' rule against a finer grid and against draws, both made by R
 // (tests/reference/psychometric_bayes.R, psychometric_bayes_sampled.R), and by law.
 #include "analysis/stats/marginal.h"
-#include "analysis/stats/psychometric_bayes.h"
+#include "analysis/stats/psychometric_mass.h"
 #include "reference.h"
 
 #include <math.h>
@@ -117,6 +117,60 @@ static void agrees_with_independent_draws(void **state)
     assert_true(agree("psychometric_bayes_sampled.csv", 5, true) >= 12);
 }
 
+// A grid laid over the priors has no point in so narrow a posterior, and says so; the one that is laid is fine.
+static void a_coarse_grid_says_so(void **state)
+{
+    (void)state;
+    const struct stat_answers answers[] = {{0, 22, 200},  {1, 13, 200},  {2, 31, 200},
+                                           {3, 65, 200},  {4, 102, 200}, {5, 167, 200},
+                                           {6, 189, 200}, {7, 196, 200}, {8, 191, 200}};
+    const struct stat_fit_desc desc = {.guess_high = 0.5};
+    struct stat_problem problem;
+    struct stat_grid *grid = calloc(1, sizeof *grid);
+    double top;
+    assert_non_null(grid);
+    assert_true(stat_problem_init(&problem, answers, 9, &desc));
+    assert_true(stat_mass_find(&problem, grid, &top) && stat_grid_sum(&problem, grid, top));
+    assert_true(grid->rough <= stat_grid_enough);
+    size_t points[STAT_GRID_AXES];
+    for (int i = 0; i < STAT_GRID_AXES; i++)
+        points[i] = grid->axis[i].points;
+    assert_int_equal(points[STAT_GRID_LAPSE], 1); // fixed
+    grid->axis[STAT_GRID_GUESS].points = 4;
+    assert_true(stat_grid_sum(&problem, grid, top));
+    assert_true(grid->rough > stat_grid_enough && grid->rough_along[STAT_GRID_GUESS]);
+    stat_posterior_axes(&problem, grid->axis);
+    for (int i = 0; i < STAT_GRID_AXES; i++)
+        grid->axis[i].points = points[i];
+    assert_true(stat_grid_sum(&problem, grid, top));
+    assert_true(grid->rough > stat_grid_enough);
+    stat_problem_finish(&problem);
+    free(grid);
+}
+
+// The normal density at 13 points a standard deviation apart, and its own quantiles (R: qnorm).
+static double flat(const void *user, double x)
+{
+    (void)user;
+    (void)x;
+    return 1;
+}
+
+static void a_bell_is_read_exactly(void **state)
+{
+    (void)state;
+    double mass[13];
+    for (int i = 0; i < 13; i++)
+        mass[i] = exp(-0.5 * (i - 6) * (i - 6)) / (i == 0 || i == 12 ? 2 : 1);
+    const struct stat_even even = {.mass = mass, .low = -6, .high = 6, .points = 13, .prior = flat};
+    struct stat_marginal m = stat_even_marginal(&even, 0.95);
+    assert_true(fabs(m.mean) < 1e-12 && fabs(m.median) < 1e-6 && fabs(m.sd - 1) < 1e-6);
+    assert_true(fabs(m.credible.low + 1.9599639845400538) < 1e-3 &&
+                fabs(m.credible.high - 1.9599639845400538) < 1e-3);
+    assert_true(
+        isnan(stat_even_marginal(&(struct stat_even){.mass = mass, .points = 3, .prior = flat}, 0.95).mean));
+}
+
 static void more_doubt_where_answers_vary_more(void **state)
 {
     (void)state;
@@ -173,9 +227,14 @@ static void bad_input(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(agrees_with_a_finer_grid),           cmocka_unit_test(agrees_with_independent_draws),
-        cmocka_unit_test(more_doubt_where_answers_vary_more), cmocka_unit_test(median_lies_where_the_mean_is),
-        cmocka_unit_test(nothing_known_is_the_prior),         cmocka_unit_test(bad_input),
+        cmocka_unit_test(agrees_with_a_finer_grid),
+        cmocka_unit_test(agrees_with_independent_draws),
+        cmocka_unit_test(a_coarse_grid_says_so),
+        cmocka_unit_test(a_bell_is_read_exactly),
+        cmocka_unit_test(more_doubt_where_answers_vary_more),
+        cmocka_unit_test(median_lies_where_the_mean_is),
+        cmocka_unit_test(nothing_known_is_the_prior),
+        cmocka_unit_test(bad_input),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
