@@ -121,19 +121,20 @@ static int ascending(const void *x, const void *y)
 
 // Even ones over the search; where levels are asked for also these and what lies midway between neighbours,
 // since a steep function has a maximum of its own between any two levels.
-static void set_thresholds(const struct stat_problem *p, struct grid *g, bool levels)
+// Returns the number of cells.
+static int set_thresholds(const struct stat_problem *p, int cells, bool levels, double at[ATS + 1])
 {
     int count = 0, shown = (int)p->count < LEVELS ? (int)p->count : LEVELS;
-    for (int i = 0; i <= g->slopes; i++)
-        g->at[count++] = along(p->at_low, p->at_high, i, g->slopes);
+    for (int i = 0; i <= cells; i++)
+        at[count++] = along(p->at_low, p->at_high, i, cells);
     for (int i = 0; levels && i < shown; i++) { // of more levels every so many
         size_t level = (size_t)i * p->count / (size_t)shown, next = level + 1;
-        g->at[count++] = p->u[level];
+        at[count++] = p->u[level];
         if (next < p->count && i + 1 < shown)
-            g->at[count++] = (p->u[level] + p->u[next]) / 2;
+            at[count++] = (p->u[level] + p->u[next]) / 2;
     }
-    qsort(g->at, (size_t)count, sizeof g->at[0], ascending);
-    g->ats = count - 1;
+    qsort(at, (size_t)count, sizeof at[0], ascending);
+    return count - 1;
 }
 
 // Diagonal neighbours may be higher: a ridge that runs between the points has its top anywhere. Of equal ones,
@@ -207,7 +208,7 @@ struct stat_point stat_problem_maximum(struct stat_problem *p, const struct stat
     if (!g)
         return best;
     g->slopes = search->fine > CELLS ? CELLS : search->fine;
-    set_thresholds(p, g, search->thorough);
+    g->ats = set_thresholds(p, g->slopes, search->thorough, g->at);
     int most = search->starts < STARTS ? search->starts : STARTS;
     int count = find_starts(p, g, starts, most, search->thorough);
     if (search->start)
@@ -230,24 +231,13 @@ static double at_profile(struct stat_problem *p, bool slope, double value, doubl
     return (slope ? stat_problem_point(p, other, value) : stat_problem_point(p, value, other)).log_likelihood;
 }
 
-double stat_problem_profile(struct stat_problem *p, bool slope, double value)
+// The most between a and b by golden sections.
+static double section(struct stat_problem *p, bool slope, double value, double a, double b, double whole)
 {
     const double golden = 0.61803398874989484820;
-    double low = slope ? p->at_low : p->ln_slope_low, high = slope ? p->at_high : p->ln_slope_high;
-    int cells = slope ? 2 * PROFILE : PROFILE, top = 0;
-    double best = -(double)INFINITY;
-    for (int i = 0; i <= cells; i++) {
-        double at = at_profile(p, slope, value, along(low, high, i, cells));
-        if (at > best) {
-            best = at;
-            top = i;
-        }
-    }
-    double a = along(low, high, top > 0 ? top - 1 : 0, cells),
-           b = along(low, high, top < cells ? top + 1 : cells, cells);
     double x = b - golden * (b - a), y = a + golden * (b - a);
     double at_x = at_profile(p, slope, value, x), at_y = at_profile(p, slope, value, y);
-    for (int i = 0; i < GOLDEN && fabs(at_x - at_y) + (b - a) * 1e3 / (high - low) > 1e-7; i++) {
+    for (int i = 0; i < GOLDEN && fabs(at_x - at_y) + (b - a) * 1e3 / whole > 1e-7; i++) {
         if (at_x > at_y) {
             b = y;
             y = x;
@@ -260,5 +250,25 @@ double stat_problem_profile(struct stat_problem *p, bool slope, double value)
             at_y = at_profile(p, slope, value, y = a + golden * (b - a));
         }
     }
-    return fmax(best, fmax(at_x, at_y));
+    return fmax(at_x, at_y);
+}
+
+// Every peak of the other parameter that is nearly as good as the best one is followed.
+double stat_problem_profile(struct stat_problem *p, bool slope, double value)
+{
+    double low = slope ? p->at_low : p->ln_slope_low, high = slope ? p->at_high : p->ln_slope_high;
+    double best = -(double)INFINITY, other[ATS + 1], at[ATS + 1];
+    int cells = slope ? set_thresholds(p, CELLS, true, other) : PROFILE;
+    for (int i = 0; i <= cells; i++) {
+        other[i] = slope ? other[i] : along(low, high, i, cells);
+        at[i] = at_profile(p, slope, value, other[i]);
+        best = fmax(best, at[i]);
+    }
+    double least = best - nearly_as_good;
+    for (int i = 0; i <= cells; i++) {
+        int before = i > 0 ? i - 1 : 0, after = i < cells ? i + 1 : cells;
+        if (at[i] >= least && at[i] >= at[before] && at[i] >= at[after])
+            best = fmax(best, section(p, slope, value, other[before], other[after], high - low));
+    }
+    return best;
 }

@@ -182,6 +182,40 @@ static void no_maximum_is_missed(void **state)
     assert_true(rows >= 50 && compared >= 20);
 }
 
+static void slope_intervals_follow_every_peak(void **state)
+{
+    (void)state;
+    static char line[16384];
+    static struct row row;
+    double worst = 0;
+    size_t rows = 0, closed = 0;
+    FILE *file = reference_open("psychometric_slope.csv");
+    assert_non_null(fgets(line, sizeof line, file));
+    for (; next_data(file, line, sizeof line, &row); rows++) {
+        struct stat_fit fit = stat_psychometric_fit(row.answers, row.count, &row.desc);
+        if (fit.status != STAT_FIT_OK)
+            continue;
+        const double low = reference_number(reference_field(&row.rest, ',')),
+                     high = reference_number(reference_field(&row.rest, ','));
+        const double ends[2][2] = {{fit.slope.low, low}, {fit.slope.high, high}};
+        for (int i = 0; i < 2; i++) {
+            if (isnan(ends[i][1])) {
+                assert_true(ends[i][0] == (i ? (double)INFINITY : 0));
+                continue;
+            }
+            double off = fabs(log(ends[i][0] / ends[i][1]));
+            worst = fmax(worst, off);
+            closed++;
+            if (!(off <= 1e-3))
+                fail_msg("%s (%s): end %d of the slope is %.9g, R %.9g", row.name,
+                         stat_family_name(row.desc.family), i, ends[i][0], ends[i][1]);
+        }
+    }
+    fclose(file);
+    print_message("%zu sets, %zu ends of slopes within %.1e of ln slope\n", rows, closed, worst);
+    assert_true(rows >= 12 && closed >= 10);
+}
+
 // --- by law ---
 
 static void functions_keep_their_word(void **state)
@@ -326,6 +360,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(fits_agree_with_r),
         cmocka_unit_test(no_maximum_is_missed),
+        cmocka_unit_test(slope_intervals_follow_every_peak),
         cmocka_unit_test(functions_keep_their_word),
         cmocka_unit_test(units_do_not_matter),
         cmocka_unit_test(bootstrap_says_when_it_is_unreliable),
