@@ -9,6 +9,7 @@
 #include "analysis/report/choice_factors.h"
 #include "analysis/report/choices.h"
 #include "analysis/report/effects.h"
+#include "analysis/report/figure_file.h"
 #include "analysis/report/frames.h"
 #include "analysis/report/frames_pairs.h"
 #include "analysis/report/gaze_over.h"
@@ -96,6 +97,11 @@ void report_what_if_scales(const struct report *r); // its rows of thresholds an
 bool report_quality(const struct report *r, char *error, size_t error_size);
 void report_bench(const struct report *r);
 bool report_draw_bench(struct report *r, char *error, size_t error_size);
+// Every figure, for both widths; report_free_figures() frees them, also after false.
+bool report_draw(struct report *r, char *error, size_t error_size);
+void report_free_figures(struct report *r);
+// As files, numbered in the report's order from 1.
+bool report_write_figures(const struct report *r, struct figure_files *files, char *error, size_t error_size);
 void report_audit(const struct report *r); // every frame accounted for
 void report_definitions(const struct report *r);
 
