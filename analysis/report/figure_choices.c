@@ -19,28 +19,37 @@ static const char regions[] =
 static const char region_edges[] =
     ", '' index 0 using ($1-0.5):3:(1):(0) with vectors nohead lw 1.5 lc rgb '" FIGURE_GREEN_EDGE
     "', '' index 0 using ($1-0.5):4:(1):(0) with vectors nohead lw 1.5 lc rgb '" FIGURE_GREEN_EDGE "'";
+#define INTERVAL_INK " lw 1.6 lc rgb '" FIGURE_INK "'"
 static const char intervals[] =
-    ", '' index 0 using 1:($2+0*$5):5:6 with yerrorbars pt 7 ps 0.4 lw 1.6 lc rgb '" FIGURE_INK "'";
+    ", '' index 0 using 1:5:(0):($6-$5) with vectors nohead" INTERVAL_INK
+    ", '' index 0 using ($1-0.08):7:(0.16):(0) with vectors nohead" INTERVAL_INK
+    ", '' index 0 using ($1-0.08):8:(0.16):(0) with vectors nohead" INTERVAL_INK
+    ", '' index 0 using 1:($9+3):(0):(-3) with vectors " FIGURE_CUT_HEAD INTERVAL_INK
+    ", '' index 0 using 1:($10-3):(0):(3) with vectors " FIGURE_CUT_HEAD INTERVAL_INK
+    ", '' index 0 using 1:($2+0*$5) with points pt 7 ps 0.4 lc rgb '" FIGURE_INK "'";
 
-// gnuplot leaves out what is NaN; the axis ends at 0 and 100.
-static void write_range(FILE *data, bool any, double low, double high)
+// gnuplot leaves out what is NaN; the axis ends at 0 and 100, beyond which no count lies.
+static void write_region(FILE *data, bool any, double low, double high)
 {
-    if (any && !isnan(low))
+    if (any)
         fprintf(data, "%.6f %.6f ", fmax(0, low), fmin(100, high));
     else
         fputs("NaN NaN ", data);
 }
 
-// Columns: place, percent, null region, interval, three words: the last is the number, where there is one.
+// Columns: place, percent, null region, six of an interval, three words: the last is the number, where there is
+// one.
 static void write_bar(FILE *data, const struct choice_cell *cell, size_t number, double x, bool narrow)
 {
     const struct stat_region *region = &cell->binomial.null_region;
     double n = (double)cell->n;
     char word[96];
     fprintf(data, "%.3f %.6f ", x, 100 * cell->estimate);
-    write_range(data, !cell->several, 100 * ((double)region->low - 0.5) / n,
-                100 * ((double)region->high + 0.5) / n);
-    write_range(data, cell->several, 100 * cell->ci.low, 100 * cell->ci.high);
+    write_region(data, !cell->several, 100 * ((double)region->low - 0.5) / n,
+                 100 * ((double)region->high + 0.5) / n);
+    double none = (double)NAN;
+    figure_interval(data, cell->several ? 100 * cell->ci.low : none, cell->several ? 100 * cell->ci.high : none,
+                    0, 100);
     snprintf(word, sizeof word, narrow ? "%.0f" : "%.0f %%", 100 * cell->estimate);
     figure_word(data, word);
     snprintf(word, sizeof word, "%" PRId64 "/%" PRId64, cell->chosen, cell->n);
@@ -153,14 +162,14 @@ bool figure_choices(const struct choices *choices, const struct figure_desc *des
             "plot %s'data' index 0 using 1:2:(0.6) with boxes fs solid noborder fc rgb '" FIGURE_ORANGE "'%s%s",
             choices->one_each ? regions : "", choices->one_each ? region_edges : "",
             choices->several ? intervals : "");
-    fprintf(figure.script, ", '' index 0 using 1:(-5):9 with labels tc rgb '" FIGURE_INK "'");
+    fprintf(figure.script, ", '' index 0 using 1:(-5):13 with labels tc rgb '" FIGURE_INK "'");
     if (!figure_choices_numbered(choices))
         fprintf(figure.script, ", '' index 1 using 1:(-14):2 with labels font ',%d' tc rgb '" FIGURE_INK "'",
                 font + 1);
     if (numbers)
         fprintf(figure.script,
-                ", '' index 0 using 1:(%s):7 with labels tc rgb '" FIGURE_INK "'"
-                ", '' index 0 using 1:(4):8 with labels font ',%d' tc rgb '" FIGURE_INK "'",
+                ", '' index 0 using 1:(%s):11 with labels tc rgb '" FIGURE_INK "'"
+                ", '' index 0 using 1:(4):12 with labels font ',%d' tc rgb '" FIGURE_INK "'",
                 desc->narrow ? "11" : "10", font - 2);
     fputc('\n', figure.script);
     return figure_end(&figure, desc->text, out_svg, error, error_size);

@@ -43,8 +43,9 @@ void report_choice_three(const struct report *r)
         r, &r->three_figure,
         "Net preference per cell: the mean over people of answers for the test option minus those for the "
         "reference, over all answers, with its t interval; \u201cequal\u201d counts 0. Negative: the "
-        "reference was preferred (as in Stengel et al. 2016, Figure 7). Intervals are drawn no further "
-        "than \u22121 and 1; the table has them whole.");
+        "reference was preferred (as in Stengel et al. 2016, Figure 7). An arrow marks an interval that goes "
+        "on "
+        "beyond \u22121 or 1, as a t interval of few people may; the table has it whole.");
     for (size_t i = 0; i < c->cell_count; i++) {
         if (!choice_three_applies(c, &c->cells[i]))
             continue;

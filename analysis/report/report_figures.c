@@ -162,7 +162,7 @@ void report_free_figures(struct report *r)
     free(r->frames_figure.narrow);
     free(r->adjusted_figure.wide);
     free(r->adjusted_figure.narrow);
-    for (int i = 0; i < BENCH_SCENES; i++) {
+    for (int i = 0; i < BENCH_FIGURES; i++) {
         free(r->bench_figures[i].wide);
         free(r->bench_figures[i].narrow);
     }
@@ -207,7 +207,7 @@ bool report_write_figures(const struct report *r, struct figure_files *files, ch
                {"ratings_answers", r->likert_figures, REPORT_QUESTIONS},
                {"thresholds", r->threshold_figures, REPORT_STAIRCASES},
                {"adjusted", &r->adjusted_figure, 0},
-               {"speed_error", r->bench_figures, BENCH_SCENES},
+               {"speed_error", r->bench_figures, BENCH_FIGURES},
                {"frame_times", &r->frames_figure, 0}};
     bool ok = figure_files_begin(files, error, error_size);
     for (size_t i = 0; ok && i < sizeof all / sizeof all[0]; i++)

@@ -61,7 +61,7 @@ struct report {
     struct figure_pair choices_figure, three_figure, frames_figure, ratings_figures[REPORT_QUESTIONS],
         factorial_figures[REPORT_QUESTIONS], likert_figures[REPORT_QUESTIONS];
     struct bench bench; // without rows where no file was given
-    struct figure_pair bench_figures[BENCH_SCENES];
+    struct figure_pair bench_figures[BENCH_FIGURES];
     struct figure_pair threshold_figures[REPORT_STAIRCASES], adjusted_figure;
 };
 
