@@ -101,7 +101,7 @@ void report_summary(const struct report *r)
 
 static void choices_caption(const struct report *r, char *out, size_t size)
 {
-    char region[512] = "", interval[256] = "";
+    char region[512] = "", interval[384] = "";
     if (r->choices.one_each)
         snprintf(
             region, sizeof region,
@@ -113,7 +113,7 @@ static void choices_caption(const struct report *r, char *out, size_t size)
         snprintf(
             interval, sizeof interval,
             "%s the mean of the people\u2019s shares, with its %g&nbsp;%% t interval as a line instead of a "
-            "region. ",
+            "region; an arrow marks one that goes on beyond 0 or 100&nbsp;%%, which the table has whole. ",
             r->choices.one_each ? "Where a person answered several times in a cell, the bar is"
                                 : "Each person answered several times in a cell; the bar is",
             100 * r->conf);

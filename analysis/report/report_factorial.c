@@ -199,7 +199,7 @@ void report_factorial(const struct report *r, const struct factorial *f, const s
             r, means,
             "Mean ratings per level, over all other factors, on the whole scale. Lines: intervals within "
             "people (Cousineau\u2013Morey), which compare the levels of one factor and do not say where a "
-            "mean lies.");
+            "mean lies; an arrow marks one that goes on beyond the scale.");
     effects_table(r, f);
     means_table(r, f);
     pairs_tables(r, f);

@@ -146,8 +146,8 @@ static size_t drawn(const char *name, const char *part)
 }
 
 // A t interval that goes on beyond the axis ends in an arrow: of 22 people one "equal" and else the reference
-// (-0.95 +- 0.095), and of shares of which one is under
-// 100 % (98.0 +- 4.2).
+// (-0.95 +- 0.095), and of
+// shares of which one is under 100 % (98.0 +- 4.2).
 static void an_interval_beyond_the_axis_has_an_arrow(void **state)
 {
     (void)state;
