@@ -11,7 +11,7 @@
 enum { CROWDED = 18 }; // bars beyond which numbers in them no longer fit
 enum { FONT_PX = 15, NARROW_FONT_PX = 12 };
 
-static const double group_gap = 0.5; // in bar slots
+static const double group_gap = 0.5, number_gap = 0.1; // in bar slots, between groups; where bars bear numbers
 
 static const char regions[] =
     "'data' index 0 using 1:3:($1-0.5):($1+0.5):3:4 with boxxyerror fs solid noborder fc rgb "
@@ -67,7 +67,12 @@ static void write_bar(FILE *data, const struct choice_cell *cell, size_t number,
 
 static void group_name(const struct choice_cell *cell, char out[256])
 {
-    level_join(cell, 0, cell->level_count ? cell->level_count - 1 : 0, out);
+    char levels[256];
+    level_join(cell, 0, cell->level_count ? cell->level_count - 1 : 0, levels);
+    if (cell->name_block)
+        snprintf(out, 256, "%.80s%s%.160s", cell->block, levels[0] ? ": " : "", levels);
+    else
+        snprintf(out, 256, "%s", levels);
 }
 
 // Cells of one group share the block and all levels but the last.
@@ -83,6 +88,16 @@ static bool same_group(const struct choice_cell *a, const struct choice_cell *b)
 static bool fits(const char *words, double px)
 {
     return 0.55 * FONT_PX * (double)strlen(words) <= px;
+}
+
+const char *figure_choices_what(const struct choices *c)
+{
+    size_t right = 0;
+    for (size_t i = 0; i < c->cell_count; i++)
+        right += c->cells[i].right;
+    return right == 0               ? "choices for the test option"
+           : right == c->cell_count ? "right answers"
+                                    : "choices for the test option, or right answers";
 }
 
 bool figure_choices_numbered(const struct choices *c)
@@ -109,14 +124,17 @@ bool figure_choices_numbered(const struct choices *c)
     return numbered;
 }
 
-// Returns where the last bar stands; bars are block 0 of the data file, groups block 1.
-static double write_data(FILE *data, const struct choices *c, bool narrow)
+// Returns where the last bar stands; bars are block 0 of the data file, groups block 1. *named: a group has a
+// name.
+static double write_data(FILE *data, const struct choices *c, bool narrow, bool *named)
 {
     const bool numbered = figure_choices_numbered(c);
+    const double gap = numbered ? number_gap : group_gap;
     double x = 0;
+    *named = false;
     for (size_t i = 0; i < c->cell_count; i++) {
         if (i)
-            x += same_group(&c->cells[i - 1], &c->cells[i]) ? 1 : 1 + group_gap;
+            x += same_group(&c->cells[i - 1], &c->cells[i]) ? 1 : 1 + gap;
         if (c->cells[i].n) // a cell of nothing but "equal" has no percent
             write_bar(data, &c->cells[i], numbered ? i + 1 : 0, x, narrow);
     }
@@ -131,8 +149,9 @@ static double write_data(FILE *data, const struct choices *c, bool narrow)
             fprintf(data, "%.3f ", (start + x) / 2);
             figure_word(data, name);
             fputc('\n', data);
+            *named = *named || name[0];
         }
-        x += ends ? 1 + group_gap : 1;
+        x += ends ? 1 + gap : 1;
         start = ends ? x : start;
     }
     return last;
@@ -146,24 +165,25 @@ bool figure_choices(const struct choices *choices, const struct figure_desc *des
     if (!figure_begin(&figure, desc->narrow ? FIGURE_NARROW_PX : FIGURE_WIDE_PX, desc->narrow ? 330 : 430, font,
                       error, error_size))
         return false;
-    double last = write_data(figure.data, choices, desc->narrow);
+    bool named;
+    double last = write_data(figure.data, choices, desc->narrow, &named);
     bool numbers = choices->cell_count <= CROWDED && !(desc->narrow && choices->cell_count > 12);
     fprintf(
         figure.script,
-        "set xrange [-0.6:%.3f]\nset yrange [-21:101]\nunset xtics\n"
+        "set xrange [-0.6:%.3f]\nset yrange [%d:101]\nunset xtics\nset label '%s' " FIGURE_UPRIGHT "\n"
         "set ytics 0,25,100 format '%%g %%%%' offset 0.5,0\n"
-        "set lmargin %d\nset rmargin 0.5\nset tmargin 0.5\nset bmargin 0\n"
+        "set lmargin %d\nset rmargin 0.5\nset tmargin 1.8\nset bmargin 0\n"
         "do for [y=0:100:25] { set arrow from graph 0, first y to graph 1, first y nohead back lw 0.6 "
         "lc rgb (y == 0 ? '" FIGURE_INK "' : '#dfe2e8') }\n"
         "set arrow from graph 0, first 50 to graph 1, first 50 nohead front lw 1.2 dt (6,4) lc rgb '" FIGURE_INK
         "'\n",
-        last + 0.6, 6);
+        last + 0.6, named ? -21 : -10, figure_choices_what(choices), 6);
     fprintf(figure.script,
             "plot %s'data' index 0 using 1:2:(0.6) with boxes fs solid noborder fc rgb '" FIGURE_ORANGE "'%s%s",
             choices->one_each ? regions : "", choices->one_each ? region_edges : "",
             choices->several ? intervals : "");
     fprintf(figure.script, ", '' index 0 using 1:(-5):13 with labels tc rgb '" FIGURE_INK "'");
-    if (!figure_choices_numbered(choices))
+    if (named)
         fprintf(figure.script, ", '' index 1 using 1:(-14):2 with labels font ',%d' tc rgb '" FIGURE_INK "'",
                 font + 1);
     if (numbers)

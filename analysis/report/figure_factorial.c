@@ -58,7 +58,7 @@ bool figure_factorial(const struct factorial *f, const struct figure_desc *desc,
     struct figure figure;
     size_t rows = row_count(f);
     int font = desc->narrow ? 12 : 14;
-    if (!figure_begin(&figure, desc->narrow ? FIGURE_NARROW_PX : FIGURE_WIDE_PX, 40 + 24 * (int)rows, font,
+    if (!figure_begin(&figure, desc->narrow ? FIGURE_NARROW_PX : FIGURE_WIDE_PX, 60 + 24 * (int)rows, font,
                       error, error_size))
         return false;
     write_rows(figure.data, f);
@@ -66,7 +66,8 @@ bool figure_factorial(const struct factorial *f, const struct figure_desc *desc,
            right = f->scale_max + margin;
     fprintf(figure.script,
             "set yrange [%.1f:-0.7]\nset xrange [%.6g:%.6g]\nunset ytics\nset xtics %.6g,%.6g,%.6g\n"
-            "set lmargin %zu\nset rmargin 7\nset tmargin 0.3\nset bmargin 1.8\n"
+            "set lmargin %zu\nset rmargin 7\nset tmargin 0.3\nset bmargin 3\nset xlabel 'mean rating' tc rgb "
+            "'" FIGURE_INK "' offset 0,0.4\n"
             "set grid xtics lw 0.6 lt 1 lc rgb '#dfe2e8'\n",
             (double)rows - 0.4, left, right, f->scale_min, span > 12 ? span / 5 : 1, f->scale_max,
             widest(f) + 2);

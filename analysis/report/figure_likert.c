@@ -126,7 +126,7 @@ bool figure_likert(const struct factorial *f, const struct figure_desc *desc, ch
     int font = desc->narrow ? 12 : 14;
     for (size_t j = 0; j < f->factor_count; j++)
         rows += f->factors[j].level_count;
-    if (!figure_begin(&figure, desc->narrow ? FIGURE_NARROW_PX : FIGURE_WIDE_PX, 40 + 24 * (int)rows, font,
+    if (!figure_begin(&figure, desc->narrow ? FIGURE_NARROW_PX : FIGURE_WIDE_PX, 60 + 24 * (int)rows, font,
                       error, error_size))
         return false;
     double reach = write_data(figure.data, f, &rows, &widest);
@@ -139,7 +139,8 @@ bool figure_likert(const struct factorial *f, const struct figure_desc *desc, ch
     fprintf(figure.script,
             "set yrange [%.1f:-0.7]\nset xrange [%.4f:%.4f]\nunset ytics\nset style fill solid 1 noborder\n"
             "set xtics ('100 %%%%' -100, '50 %%%%' -50, '0' 0, '50 %%%%' 50, '100 %%%%' 100)\n"
-            "set lmargin %zu\nset rmargin 2\nset tmargin 0.3\nset bmargin 1.8\n"
+            "set lmargin %zu\nset rmargin 2\nset tmargin 0.3\nset bmargin 3\nset xlabel 'share of answers' tc "
+            "rgb '" FIGURE_INK "' offset 0,0.4\n"
             "set grid xtics lw 0.6 lt 1 lc rgb '#dfe2e8'\nplot ",
             (double)rows - 0.4, -edge, edge, widest + 2);
     size_t points = points_of(f);

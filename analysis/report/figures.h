@@ -26,6 +26,8 @@ struct figure_desc {
 // cell, its interval is drawn instead.
 bool figure_choices(const struct choices *choices, const struct figure_desc *desc, char **out_svg, char *error,
                     size_t error_size);
+// "choices for the test option", "right answers", or both: what the bars are percentages of.
+const char *figure_choices_what(const struct choices *choices);
 // Whether the bars bear numbers, those of the table's rows: words are missing, or do not fit.
 bool figure_choices_numbered(const struct choices *choices);
 

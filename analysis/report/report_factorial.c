@@ -159,7 +159,7 @@ static void left_out(const struct report *r, const struct factorial *f)
     if (f->left_count == 0)
         return;
     fputs("<p class=\"note\">", r->out);
-    html_printf(r->out, "Left out, since nothing is filled in: ");
+    html_printf(r->out, "Left out, as missing ratings are never filled in: ");
     for (size_t i = 0; i < f->left_count; i++)
         html_printf(r->out, "%s%s (no rating in %zu of %zu cells)", i ? ", " : "",
                     r->sample->people[f->left[i].person].code, f->left[i].missing, f->cells);

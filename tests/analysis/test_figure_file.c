@@ -129,7 +129,7 @@ static void net_preferences_are_drawn_of_three_answers(void **state)
 static size_t count(const char *text, const char *part)
 {
     size_t n = 0;
-    for (; (text = strstr(text, part)); text += strlen(part))
+    for (; part[0] && (text = strstr(text, part)); text += strlen(part))
         n++;
     return n;
 }
@@ -161,6 +161,30 @@ static void an_interval_beyond_the_axis_has_an_arrow(void **state)
     study_file_sql("s.db", "UPDATE choice SET chosen = (SELECT test_slot FROM trial WHERE id = trial_id) "
                            "WHERE trial_id NOT BETWEEN 1020 AND 1024");
     assert_int_equal(drawn("choices", "<polygon"), whole + 1);
+}
+
+// The means' dots of both panels.
+static void keep_dots(char out[20000])
+{
+    drawn("ratings_before_after_1", "");
+    const char *svg = text_of("drawn", "ratings_before_after_1", "svg"), *from = strstr(svg, "gnuplot_plot_3"),
+               *to = strstr(svg, "gnuplot_plot_4");
+    assert_true(from && to && to - from < 20000);
+    snprintf(out, 20000, "%.*s", (int)(to - from), from);
+}
+
+// Orange is the option under test, also where `regular` has parameters.
+static void the_reference_keeps_its_colour(void **state)
+{
+    (void)state;
+    static char plain[20000], resolved[20000];
+    study_file_make("s.db", &(struct study_desc){0});
+    keep_dots(plain);
+    study_file_sql("s.db",
+                   "UPDATE condition SET parameters = '{\"eyes\":\"separate\"}' WHERE mode = 'regular'");
+    keep_dots(resolved);
+    assert_non_null(strstr(plain, "232"));
+    assert_string_equal(resolved, plain);
 }
 
 // Two cards in one file of fovbench: a heading, a figure and a speed of its own for each.
@@ -211,6 +235,7 @@ int main(void)
         cmocka_unit_test(pdf_where_it_can_be_made),
         cmocka_unit_test(a_file_is_no_folder),
         cmocka_unit_test(an_interval_beyond_the_axis_has_an_arrow),
+        cmocka_unit_test(the_reference_keeps_its_colour),
         cmocka_unit_test(every_device_of_a_bench_has_its_figure),
     };
     return cmocka_run_group_tests(tests, program_enter_folder, program_leave_folder);
