@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { CROWDED = 18 }; // bars beyond which numbers in them no longer fit
+enum { CROWDED = 18, NARROW_CROWDED = 9 }; // bars beyond which numbers in them no longer fit
 enum { FONT_PX = 15, NARROW_FONT_PX = 12 };
 
 static const double group_gap = 0.5, number_gap = 0.1; // in bar slots, between groups; where bars bear numbers
@@ -124,14 +124,30 @@ bool figure_choices_numbered(const struct choices *c)
     return numbered;
 }
 
+// The factor whose levels stand under all bars, with its unit; false where there is none.
+static bool bar_factor(const struct choices *c, char out[96])
+{
+    const char *factor = NULL;
+    for (size_t i = 0; i < c->cell_count; i++) {
+        const struct choice_cell *cell = &c->cells[i];
+        const char *last = cell->level_count ? cell->levels[cell->level_count - 1].factor : NULL;
+        if (!last || (factor && strcmp(factor, last) != 0))
+            return false;
+        factor = last;
+    }
+    if (factor)
+        level_name(factor, out);
+    return factor != NULL;
+}
+
 // Returns where the last bar stands; bars are block 0 of the data file, groups block 1. *named: a group has a
 // name.
-static double write_data(FILE *data, const struct choices *c, bool narrow, bool *named)
+static double write_data(FILE *data, const struct choices *c, bool narrow, bool *named, bool *factor_named)
 {
     const bool numbered = figure_choices_numbered(c);
     const double gap = numbered ? number_gap : group_gap;
     double x = 0;
-    *named = false;
+    *named = *factor_named = false;
     for (size_t i = 0; i < c->cell_count; i++) {
         if (i)
             x += same_group(&c->cells[i - 1], &c->cells[i]) ? 1 : 1 + gap;
@@ -154,6 +170,13 @@ static double write_data(FILE *data, const struct choices *c, bool narrow, bool 
         x += ends ? 1 + gap : 1;
         start = ends ? x : start;
     }
+    char factor[96]; // block 2: what a narrow figure's bars have no room for
+    if (narrow && !numbered && bar_factor(c, factor)) {
+        fprintf(data, "\n\n%.3f ", last / 2);
+        figure_word(data, factor);
+        fputc('\n', data);
+        *factor_named = true;
+    }
     return last;
 }
 
@@ -165,9 +188,10 @@ bool figure_choices(const struct choices *choices, const struct figure_desc *des
     if (!figure_begin(&figure, desc->narrow ? FIGURE_NARROW_PX : FIGURE_WIDE_PX, desc->narrow ? 330 : 430, font,
                       error, error_size))
         return false;
-    bool named;
-    double last = write_data(figure.data, choices, desc->narrow, &named);
-    bool numbers = choices->cell_count <= CROWDED && !(desc->narrow && choices->cell_count > 12);
+    bool named, factor_named;
+    double last = write_data(figure.data, choices, desc->narrow, &named, &factor_named);
+    bool numbers = choices->cell_count <= (desc->narrow ? NARROW_CROWDED : CROWDED);
+    double group_y = -14, factor_y = named ? -22 : -14;
     fprintf(
         figure.script,
         "set xrange [-0.6:%.3f]\nset yrange [%d:101]\nunset xtics\nset label '%s' " FIGURE_UPRIGHT "\n"
@@ -177,15 +201,17 @@ bool figure_choices(const struct choices *choices, const struct figure_desc *des
         "lc rgb (y == 0 ? '" FIGURE_INK "' : '#dfe2e8') }\n"
         "set arrow from graph 0, first 50 to graph 1, first 50 nohead front lw 1.2 dt (6,4) lc rgb '" FIGURE_INK
         "'\n",
-        last + 0.6, named ? -21 : -10, figure_choices_what(choices), 6);
+        last + 0.6, (named ? -21 : -10) - (factor_named ? 8 : 0), figure_choices_what(choices), 6);
     fprintf(figure.script,
-            "plot %s'data' index 0 using 1:2:(0.6) with boxes fs solid noborder fc rgb '" FIGURE_ORANGE "'%s%s",
-            choices->one_each ? regions : "", choices->one_each ? region_edges : "",
-            choices->several ? intervals : "");
+            "plot %s'data' index 0 using 1:2:(%s) with boxes fs solid noborder fc rgb '" FIGURE_ORANGE "'%s%s",
+            choices->one_each ? regions : "", figure_choices_numbered(choices) ? "0.8" : "0.6",
+            choices->one_each ? region_edges : "", choices->several ? intervals : "");
     fprintf(figure.script, ", '' index 0 using 1:(-5):13 with labels tc rgb '" FIGURE_INK "'");
     if (named)
-        fprintf(figure.script, ", '' index 1 using 1:(-14):2 with labels font ',%d' tc rgb '" FIGURE_INK "'",
-                font + 1);
+        fprintf(figure.script, ", '' index 1 using 1:(%g):2 with labels font ',%d' tc rgb '" FIGURE_INK "'",
+                group_y, font + 1);
+    if (factor_named)
+        fprintf(figure.script, ", '' index 2 using 1:(%g):2 with labels tc rgb '" FIGURE_INK "'", factor_y);
     if (numbers)
         fprintf(figure.script,
                 ", '' index 0 using 1:(%s):11 with labels tc rgb '" FIGURE_INK "'"

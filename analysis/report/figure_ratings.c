@@ -77,7 +77,7 @@ bool figure_ratings(const struct sample *sample, const struct rating_question *q
     fprintf(
         figure.script,
         "set xrange [-0.6:%.3f]\nset yrange [%.4f:%.4f]\nunset xtics\nset ytics %.6g,%.6g,%.6g offset 0.5,0\n"
-        "set lmargin 4\nset rmargin 0.5\nset tmargin 1.8\nset bmargin 0\nset label 'rating' " FIGURE_UPRIGHT
+        "set lmargin 5\nset rmargin 0.5\nset tmargin 1.8\nset bmargin 0\nset label 'rating' " FIGURE_UPRIGHT
         "\nset grid ytics lw 0.6 lt 1 lc rgb "
         "'#dfe2e8'\n",
         panel_width * (double)(q->group_count - 1) + 1.6, q->scale_min - 0.24 * span,

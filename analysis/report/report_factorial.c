@@ -160,9 +160,14 @@ static void left_out(const struct report *r, const struct factorial *f)
         return;
     fputs("<p class=\"note\">", r->out);
     html_printf(r->out, "Left out, as missing ratings are never filled in: ");
-    for (size_t i = 0; i < f->left_count; i++)
-        html_printf(r->out, "%s%s (no rating in %zu of %zu cells)", i ? ", " : "",
-                    r->sample->people[f->left[i].person].code, f->left[i].missing, f->cells);
+    for (size_t i = 0, alike = 1; i < f->left_count; i++, alike++) { // who lack as many one after another
+        html_printf(r->out, "%s%s", i ? ", " : "", r->sample->people[f->left[i].person].code);
+        if (i + 1 < f->left_count && f->left[i + 1].missing == f->left[i].missing)
+            continue;
+        html_printf(r->out, " (no rating in %zu of %zu cells%s)", f->left[i].missing, f->cells,
+                    alike > 1 ? " each" : "");
+        alike = 0;
+    }
     fputs(".</p>\n", r->out);
 }
 
