@@ -75,6 +75,14 @@ void figure_cut(char *text, size_t most)
     memcpy(text + most, "\u2026", sizeof "\u2026");
 }
 
+void figure_cut_word(FILE *data, const char *text, size_t most)
+{
+    char room[256];
+    snprintf(room, sizeof room - 4, "%s", text);
+    figure_cut(room, most);
+    figure_word(data, room);
+}
+
 static void write_where(FILE *data, bool there, double value)
 {
     if (there)

@@ -43,6 +43,10 @@ void figure_word(FILE *data, const char *text);
 // Cuts between letters what is longer than `most` bytes, and puts "…" there; `text` has room for 4 more.
 void figure_cut(char *text, size_t most);
 
+// The same of a word for the data file; `most` is at most 200.
+void figure_cut_word(FILE *data, const char *text, size_t most);
+enum { FIGURE_LEVEL_LONGEST = 24 }; // bytes of a level's name to the left of a row
+
 // Six columns of the data file: an interval as far as an axis from `least` to `most` shows it, its ends that
 // the axis shows, and its ends that the axis cuts, for FIGURE_CUT_HEAD; NaN where there is none.
 void figure_interval(FILE *data, double low, double high, double least, double most);

@@ -20,21 +20,17 @@ static void write_rows(FILE *data, const struct factorial *f)
         row++;
         for (size_t k = 0; k < factor->level_count; k++) {
             double half = factor->half_width[k]; // may reach beyond the scale
-            char level[40];
-            snprintf(level, sizeof level, "%.39s", factor->levels[k]);
             fprintf(data, "%zu %.6f ", row++, factor->mean[k]);
             figure_interval(data, factor->mean[k] - half, factor->mean[k] + half, f->scale_min, f->scale_max);
-            figure_word(data, level);
+            figure_cut_word(data, factor->levels[k], FIGURE_LEVEL_LONGEST);
             fprintf(data, " \"%.2f\"\n", factor->mean[k]);
         }
     }
     fputs("\n\n", data);
     row = 0;
     for (size_t j = 0; j < f->factor_count; j++) {
-        char name[40];
-        snprintf(name, sizeof name, "%.39s", f->factors[j].name);
         fprintf(data, "%zu ", row);
-        figure_word(data, name);
+        figure_cut_word(data, f->factors[j].name, 40);
         fputc('\n', data);
         row += 1 + f->factors[j].level_count;
     }
@@ -49,7 +45,7 @@ static size_t widest(const struct factorial *f)
             size_t length = strlen(f->factors[j].levels[k]);
             most = length > most ? length : most;
         }
-    return most < 24 ? most : 24;
+    return most < FIGURE_LEVEL_LONGEST ? most : FIGURE_LEVEL_LONGEST;
 }
 
 bool figure_factorial(const struct factorial *f, const struct figure_desc *desc, char **out_svg, char *error,

@@ -34,11 +34,8 @@ static void write_lines(FILE *data, const struct rating_question *q)
 
 static void write_option(FILE *data, const struct sample *sample, size_t condition, bool narrow)
 {
-    char mode[64];
-    snprintf(mode, sizeof mode - 4, "%s", sample->conditions[condition].mode);
-    figure_cut(mode, narrow ? NARROW_LONGEST : LONGEST);
     fputc(' ', data);
-    figure_word(data, mode);
+    figure_cut_word(data, sample->conditions[condition].mode, narrow ? NARROW_LONGEST : LONGEST);
 }
 
 // Block 1: the means, with what was rated and when.

@@ -122,7 +122,7 @@ static void pair_row(FILE *out, const struct factorial_factor *factor, const str
 
 static void pairs_tables(const struct report *r, const struct factorial *f)
 {
-    char ci[32], caption[64];
+    char ci[32];
     snprintf(ci, sizeof ci, "%g&nbsp;%% interval", 100 * r->conf);
     const char *const headings[] = {"levels", "difference", ci, "t", "p", "p Holm", "d<sub>z</sub>", ci, NULL};
     bool any = false;
@@ -134,8 +134,7 @@ static void pairs_tables(const struct report *r, const struct factorial *f)
         fputs("<p>", r->out);
         html_printf(r->out, "Levels of %s, over all other factors:", factor->name);
         fputs("</p>\n", r->out);
-        snprintf(caption, sizeof caption, "Pairs of levels, paired t-tests, factor %zu", j + 1);
-        open_table(r->out, caption, "", headings, 1);
+        open_table(r->out, "Pairs of levels, paired t-tests", "", headings, 1);
         for (size_t i = 0; i < factor->pair_count; i++)
             pair_row(r->out, factor, &factor->pairs[i]);
         close_table(r->out);

@@ -171,8 +171,9 @@ static void sequence_table(const struct report *r)
 
 static void targets_table(const struct report *r)
 {
-    static const char *const headings[] = {"<participant", "<eye",    "<target",          "samples", "M (SD)",
-                                           "median",       "outside", "target not known", NULL};
+    static const char *const headings[] = {
+        "<participant",     "<eye", "<target", "samples", "M (SD)", "median", "samples outside",
+        "target not known", NULL};
     const struct gaze_over *over = &r->gaze_over;
     FILE *out = r->out;
     if (over->target_count == 0) {
@@ -257,8 +258,8 @@ static void limits(const struct report *r)
         worst = fmax(worst, g->checks[i].accuracy_deg);
     }
     if (g->check_count)
-        fprintf(out, "<p>Independent checks of the tracker: points %zu, not passed %zu.", g->check_count,
-                failed);
+        fprintf(out, "<p>Independent checks of the tracker at %zu point%s, %zu of them not passed.",
+                g->check_count, g->check_count == 1 ? "" : "s", failed);
     if (accuracy.n)
         fprintf(out, " Mean distance from the points: %.2f\u00b0, at worst %.2f\u00b0.", accuracy.mean, worst);
     fputs(g->check_count ? "</p>\n" : "", out);
@@ -297,7 +298,7 @@ static void methods(const struct report *r)
         o->bcea_share, o->rules.velocity_deg_s, o->rules.window_ms, o->rules.min_fixation_ms, o->gap_ms);
     fputs("Main sequence, of peak velocity V and amplitude A: V = V<sub>max</sub> (1 \u2212 e<sup>\u2212A / "
           "c</sup>) and "
-          "V = k A<sup>b</sup>. ",
+          "V\u00a0=\u00a0k\u00a0A<sup>b</sup>. ",
           out);
     html_printf(
         out,
