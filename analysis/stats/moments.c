@@ -6,8 +6,8 @@
 #include <float.h>
 #include <math.h>
 
-// Values reached by adding steps, and means, are apart by what their sums were rounded by: 0.1 + 0.2 is not 0.3.
-// Values no farther apart than ten rounding errors have no spread, as t.test of R takes data for constant.
+// Values reached by adding steps, and means, are apart by what their sums were rounded by: 0.1 + 0.2 is not
+// 0.3. Values no farther apart than ten rounding errors have no spread, as t.test of R takes data for constant.
 static const double rounding = 10 * DBL_EPSILON;
 
 // How far any value lies from the first one.
