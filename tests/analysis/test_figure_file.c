@@ -183,7 +183,10 @@ static void the_reference_keeps_its_colour(void **state)
     study_file_sql("s.db",
                    "UPDATE condition SET parameters = '{\"eyes\":\"separate\"}' WHERE mode = 'regular'");
     keep_dots(resolved);
-    assert_non_null(strstr(plain, "232"));
+    // first panel: regular first, so blue comes before orange
+    const char *blue = strstr(plain, "color='rgb( 47, 109, 168)'"),
+               *orange = strstr(plain, "color='rgb(232, 145,  45)'");
+    assert_true(blue && orange && blue < orange);
     assert_string_equal(resolved, plain);
 }
 
