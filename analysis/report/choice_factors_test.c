@@ -149,7 +149,7 @@ static void mcnemar(struct choice_factor_test *test, const struct factor_people 
     struct stat_mcnemar m = stat_mcnemar_test(b, c, conf);
     test->p_value = m.p_exact;
     test->statistic = m.chi_squared;
-    test->df = 1;
+    test->df = isnan(m.chi_squared) ? (double)NAN : 1;
     test->p_asymptotic = m.p_value;
     test->odds_ratio = m.odds_ratio;
     test->odds_ci = m.ci;
