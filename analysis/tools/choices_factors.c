@@ -79,18 +79,15 @@ static void legend(const struct choice_factors *factors)
     }
     printf("difference: of the shares, in percentage points. Holm p: over the factors%s.\n",
            pairs ? "; of pairs of levels, over the pairs" : "");
-    puts("A factor lies within people (McNemar, Cochran) where at least half of them were to answer at several "
-         "of "
-         "its\nlevels, else between people (Fisher, exchange of people).");
+    puts("A factor lies within people (McNemar, Cochran) where at least half of them were to answer at\n"
+         "several of its levels, else between people (Fisher, exchange of people).");
     if (difference)
-        printf(
-            "Interval within people: Fay and Lumbard's, which leaves 0 out exactly where McNemar's p is below "
-            "%.4g.\n",
-            1 - factors->conf);
+        printf("Interval within people: Fay and Lumbard's, which leaves 0 out exactly where McNemar's p\n"
+               "is below %.4g.\n",
+               1 - factors->conf);
     if (between)
-        puts("Interval between people: Newcombe's of one answer each, Welch's else; near its limit the exact p "
-             "may "
-             "say\notherwise.");
+        puts("Interval between people: Newcombe's of one answer each, Welch's else; near its limit the\n"
+             "exact p may say otherwise.");
     puts("A large p does not show that levels are equal.");
 }
 
