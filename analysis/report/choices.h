@@ -65,7 +65,7 @@ struct choice_cell {
     int64_t *equals;            // "equal"
     // Who was to answer: people whose sessions planned trials of this cell, whatever became of them.
     size_t planned_count;
-    size_t *planned; // indices in the sample
+    size_t *planned; // indices in the sample, rising
     // Working arrays, one entry per answer:
     size_t answers;
     size_t toggled;

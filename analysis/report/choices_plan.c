@@ -1,7 +1,6 @@
 // Who was to answer in a cell.
 #include "analysis/report/choices_private.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 struct filling {
@@ -10,14 +9,19 @@ struct filling {
     size_t file;
 };
 
+// In order: sessions come mostly by person, so that a new one goes to the end.
 static bool add_person(struct choice_cell *cell, size_t person)
 {
-    for (size_t i = cell->planned_count; i-- > 0;) // mostly the last one: rows come session by session
-        if (cell->planned[i] == person)
-            return true;
+    size_t at = cell->planned_count;
+    while (at > 0 && cell->planned[at - 1] > person)
+        at--;
+    if (at > 0 && cell->planned[at - 1] == person)
+        return true;
     if (!sample_grow(&cell->planned, cell->planned_count, sizeof cell->planned[0]))
         return false;
-    cell->planned[cell->planned_count++] = person;
+    memmove(&cell->planned[at + 1], &cell->planned[at], (cell->planned_count - at) * sizeof cell->planned[0]);
+    cell->planned[at] = person;
+    cell->planned_count++;
     return true;
 }
 

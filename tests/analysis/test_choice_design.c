@@ -8,6 +8,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -136,6 +137,19 @@ static void the_plan_in_the_file_decides(void **state)
                    "= 1)"); // now nobody answered at both
     r = choices_of("within.db", false);
     assert_non_null(strstr(r.out, "\nepsilon 0.2 and 0.05: no test; nobody answered at both levels.\n"));
+    program_free(&r);
+    r = program_run((const char *const[]){fovstats, "report", "within.db", "-o", "within.html", NULL}, NULL);
+    assert_int_equal(r.code, 0);
+    static char page[1 << 20];
+    FILE *file = fopen("within.html", "r");
+    assert_non_null(file);
+    page[fread(page, 1, sizeof page - 1, file)] = '\0';
+    fclose(file);
+    assert_non_null(
+        strstr(page, "epsilon: 0.2 \u2212 0.05</th><td>0</td><td class=\"word\">McNemar</td><td class=\"word\" "
+                     "colspan=\"6\">no test: nobody answered at both levels</td>"));
+    assert_non_null(
+        strstr(page, "<li>epsilon 0.2 and 0.05: left out, people without an answer at every level: 22.</li>"));
     program_free(&r);
 }
 
