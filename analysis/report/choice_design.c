@@ -63,7 +63,7 @@ bool choice_design(const struct choices *c, size_t cell, size_t level, struct ch
             continue;
         for (size_t k = 0; k < c->cells[i].planned_count; k++)
             levels[c->cells[i].planned[k]] |= UINT64_C(1) << bit;
-        for (size_t k = 0; k < c->cells[i].people; k++)
+        for (size_t k = 0; k < c->cells[i].people; k++) // who answered was to answer
             levels[c->cells[i].person[k]] |= UINT64_C(1) << bit;
     }
     for (size_t p = 0; levels && p < people; p++) {
