@@ -189,7 +189,7 @@ static bool print_json(const struct sample *sample, const struct choices *c, con
     choices_factors_json(&json, &parts->factors);
     bool ok = choices_three_json(&json, c);
     if (!isnan(parts->margin))
-        choices_equivalence_json(&json, c, parts->margin);
+        ok = choices_equivalence_json(&json, c, parts->margin) && ok;
     choices_effects_json(&json, &parts->effects);
     json_integer(&json, "answers", c->answers);
     json_number(&json, "toggles_mean", c->toggles.mean);
