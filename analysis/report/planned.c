@@ -204,22 +204,26 @@ static bool add_plan(struct planned *out, struct sample *sample, const struct pl
     return ok && (!why || row);
 }
 
-// Over the planned family.
-static bool finish_holm(struct planned *out)
+// Over the planned family. No preference has both no difference and one beyond the margin.
+static bool adjust(struct planned *out)
 {
-    double *p = malloc((out->row_count + 1) * sizeof *p);
-    if (!p)
-        return false;
-    for (size_t i = 0; i < out->row_count; i++) {
+    double *p = calloc(out->row_count + 1, sizeof *p);
+    size_t *set = calloc(out->row_count + 1, sizeof *set);
+    for (size_t i = 0; p && set && i < out->row_count; i++) {
         p[i] = out->rows[i].p_value;
+        set[i] = isnan(out->rows[i].margin) ? i : i - 1;
         out->tested += isnan(p[i]) ? 0 : 1;
     }
-    stat_adjust_holm(p, out->row_count, p);
-    for (size_t i = 0; i < out->row_count; i++)
+    bool ok = p && set;
+    if (ok)
+        stat_adjust_exclusive(p, set, out->row_count, p);
+    for (size_t i = 0; ok && i < out->row_count; i++)
         out->rows[i].holm = p[i];
     free(p);
-    planned_verdicts(out);
-    return true;
+    free(set);
+    if (ok)
+        planned_verdicts(out);
+    return ok;
 }
 
 bool planned_load(struct planned *out, struct sample *sample, const struct plans *plans,
@@ -230,7 +234,7 @@ bool planned_load(struct planned *out, struct sample *sample, const struct plans
     snprintf(error, error_size, "not enough memory");
     for (size_t i = 0; ok && i < plans->count; i++)
         ok = add_plan(out, sample, plans, i, sources, error, error_size);
-    ok = ok && finish_holm(out);
+    ok = ok && adjust(out);
     if (ok)
         error[0] = '\0';
     else

@@ -6,8 +6,10 @@
 // of differences names what is subtracted from what.
 //
 // Holm's p is over every row that has a p: the planned family. A margin of equivalence is a claim of its own,
-// so its test has a row of its own in that family, and equality counts as shown by Holm's p alone. Holm needs
-// no assumption on how the tests are tied to each other. What cannot be computed has a row that says why.
+// so its test has a row of its own in that family, and equality counts as shown by Holm's p alone. No
+// difference and a difference beyond the margin cannot both be true, so that both tests of a preference count
+// once, as Shaffer's form of Holm's procedure permits (stats/multiple.h): a margin costs the other tests
+// nothing. What cannot be computed has a row that says why.
 #ifndef ANALYSIS_REPORT_PLANNED_H
 #define ANALYSIS_REPORT_PLANNED_H
 

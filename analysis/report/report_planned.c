@@ -119,10 +119,13 @@ static void family(const struct report *r)
         html_printf(r->out, "p (Holm) is adjusted for the %zu %s of this table, the planned family", tests,
                     tests == 1 ? "test" : "tests");
     if (equality)
-        html_printf(r->out,
-                    "; %zu of them %s of equality by two one-sided tests, with the interval that belongs to "
-                    "them. Equality, and a difference beside it, count as shown where p (Holm) is at most %.4g",
-                    equality, equality == 1 ? "is" : "are", 1 - r->conf);
+        html_printf(
+            r->out,
+            "; %zu of them %s of equality by two one-sided tests, with the interval that belongs to "
+            "them. No difference and one beyond the margin cannot both be true, so that the two tests of "
+            "a preference count once (Shaffer 1986). Equality, and a difference beside it, count as "
+            "shown where p (Holm) is at most %.4g",
+            equality, equality == 1 ? "is" : "are", 1 - r->conf);
     fputs(tests ? ". " : "", r->out);
 }
 
@@ -136,9 +139,10 @@ void report_planned_methods(const struct report *r)
     if (equality)
         html_printf(r->out,
                     "Equality of preferences within the protocol\u2019s margin was tested by two one-sided "
-                    "tests, exact binomial of one answer each, t-tests of the people\u2019s shares else; %s in "
-                    "the planned family, and equality is claimed only where Holm\u2019s p is at most %.4g. ",
-                    equality == 1 ? "that test is" : "these tests are", 1 - r->conf);
+                    "tests: exact binomial of one answer each, t-tests of the people\u2019s shares else. %s in "
+                    "the family, where the two tests of a preference count once, as their hypotheses exclude "
+                    "each other (Shaffer 1986); equality is claimed only where Holm\u2019s p is at most %.4g. ",
+                    equality == 1 ? "That test is" : "These tests are", 1 - r->conf);
 }
 
 void report_planned(const struct report *r)

@@ -2,8 +2,8 @@
 # The small study of tests/analysis/study_file.c: person i of 22; cell 1 (epsilon 0.2): i <= 6 chose the test option;
 # cell 2 (epsilon 0.05) of persons 1 to 19: i <= 4; both with i %% 7 toggles and after i / 2 seconds. Ratings first and
 # second as in small_study.R. "hand" is a factor between people: odd and even i. Margin of equivalence 0.2, with the
-# 90 % interval. A line: plan and row, estimate, interval, p, Holm's p over all rows of the study, those of equality too;
-# NA where there is none. The last lines are of the same study with 11 of 22 and 9 of 19 for the test option.
+# 90 % interval. A line: plan and row, estimate, interval, p, Holm's p over all rows of the study, those of equality too,
+# of which and of the row before one hypothesis at most is true (Shaffer 1986); NA where there is none. The last lines are of the same study with 11 of 22 and 9 of 19 for the test option.
 i <- 1:22
 k1 <- as.numeric(i <= 6); k2 <- ifelse(i <= 19, as.numeric(i <= 4), NA)
 first <- c(6, 7, 5, 8, 6, 4, 6, 7, 9, 6, 6, 6, 9, 5, 8, 6, 4, 7, 6, 6)
@@ -41,7 +41,18 @@ add("anova choice factor", f$statistic^2 / (f$statistic^2 + 18), NA, NA, pf(f$st
 of_t("paired_t rating order test", t.test(change[1:11]))
 of_t("paired_t rating order regular", t.test(change[12:20]))
 of_t("unpaired_t rating order", t.test(first[12:20], first[1:11]))
-holm <- p.adjust(sapply(rows, function(r) r[[2]][4]), "holm")
+# In ascending order each p times the largest number of hypotheses of those left that can be true together.
+holm_of <- function(rows) {
+  p <- sapply(rows, function(r) r[[2]][4])
+  claim <- cumsum(!grepl("equality", sapply(rows, `[[`, 1)))
+  out <- rep(NA, length(p)); most <- 0
+  for (i in order(p, na.last = NA)) {
+    left <- !is.na(p) & is.na(out)
+    most <- max(most, min(1, length(unique(claim[left])) * p[i])); out[i] <- most
+  }
+  out
+}
+holm <- holm_of(rows)
 line <- function(r, h) paste(c(r[[1]], sprintf("%.17g", c(r[[2]], h))), collapse = ",")
 out <- mapply(line, rows, holm)
 odd <- i %% 2 == 1; w <- t.test(i[odd] / 2, i[!odd] / 2)
@@ -55,7 +66,7 @@ for (margin in c(0.2, 0.3)) {
     add(paste("even", margin, "cell", cell[[1]]), cell[[2]] / cell[[3]], b$conf.int[1], b$conf.int[2], b$p.value)
     equality(paste("even", margin, "equality", cell[[1]]), cell[[2]], cell[[3]], margin)
   }
-  out <- c(out, mapply(line, rows, p.adjust(sapply(rows, function(r) r[[2]][4]), "holm")))
+  out <- c(out, mapply(line, rows, holm_of(rows)))
 }
 p <- c(tost(11, 22), tost(9, 19)) # as fovstats choices has them: over its cells
 out <- c(out, sprintf("choices equality cell %s,%.17g,%.17g", c("0.2", "0.05"), p, p.adjust(p, "holm")))
