@@ -1,6 +1,8 @@
 // Results of planned analyses against R (tests/reference/planned.R), and what is said where there is none.
 #include "analysis/report/planned.h"
+#include "program.h"
 #include "reference.h"
+#include "said.h"
 #include "study_file.h"
 
 #include <math.h>
@@ -24,18 +26,9 @@ struct loaded {
     struct planned planned;
 };
 
-static int enter_folder(void **state)
-{
-    static char folder[] = "/tmp/fovstats-planned-XXXXXX";
-    *state = mkdtemp(folder);
-    return *state && chdir(folder) == 0 ? 0 : -1;
-}
+static const char fovstats[] = BUILD_DIR "/bin/fovstats";
 
-static int leave_folder(void **state)
-{
-    unlink("s.db");
-    return chdir("/") == 0 && rmdir(*state) == 0 ? 0 : -1;
-}
+#define FOVSTATS(...) program_run((const char *const[]){fovstats, __VA_ARGS__, NULL}, NULL)
 
 // A plan as JSON's members: "binomial", "choice", "cell", then further members.
 #define PLAN(method, of, per, more) "{\"method\":\"" method "\",\"of\":\"" of "\",\"per\":\"" per "\"" more "}"
@@ -74,8 +67,8 @@ static void unload(struct loaded *l)
     sample_free(&l->sample);
 }
 
-// A row's numbers against R's line of that name; the largest relative difference so far goes up.
-static void compare(const struct planned_row *row, const char *name, double *io_worst)
+// The numbers of R's line of that name: estimate, low, high, p, Holm's p.
+static void known(const char *name, double out[5])
 {
     char line[256], *rest = NULL;
     FILE *file = reference_open("planned.csv");
@@ -85,12 +78,20 @@ static void compare(const struct planned_row *row, const char *name, double *io_
     fclose(file);
     assert_non_null(rest);
     rest[strcspn(rest, "\n")] = '\0';
+    for (int i = 0; i < 5; i++)
+        out[i] = reference_number(reference_field(&rest, ','));
+}
+
+// The largest relative difference so far goes up.
+static void compare(const struct planned_row *row, const char *name, double *io_worst)
+{
     const double got[] = {row->estimate, row->low, row->high, row->p_value, row->holm};
+    double r[5];
+    known(name, r);
     for (int i = 0; i < 5; i++) {
-        double known = reference_number(reference_field(&rest, ','));
-        *io_worst = fmax(*io_worst, reference_distance(got[i], known));
-        if (!reference_close(got[i], known, 1e-9))
-            fail_msg("%s, number %d: %.17g, R %.17g (%s)", name, i + 1, got[i], known, row->words);
+        *io_worst = fmax(*io_worst, reference_distance(got[i], r[i]));
+        if (!reference_close(got[i], r[i], 1e-9))
+            fail_msg("%s, number %d: %.17g, R %.17g (%s)", name, i + 1, got[i], r[i], row->words);
     }
 }
 
@@ -308,6 +309,38 @@ static void nothing_planned_is_left_without_a_row(void **state)
     }
 }
 
+static void the_command_says_the_same(void **state)
+{
+    (void)state;
+    static const char equality[] = "\u03b5 0.2: equality within 30 to 70\u00a0%";
+    study_file_make("s.db", &(struct study_desc){.simulated = false});
+    said_sentence(FOVSTATS("planned", "s.db"), 1, "s.db: the protocol planned no analysis");
+    study_file_even("s.db");
+    plan(PLAN("binomial", "choice", "cell", ",\"margin\":0.2"));
+    struct program_result r = FOVSTATS("planned", "s.db", "--json");
+    assert_int_equal(r.code, 0);
+    assert_true(said_after(r.out, "conf", "tests") == 4);
+    static const char *const keys[] = {"estimate", "ci_low", "ci_high", "p_value", "p_holm"};
+    double of_r[5];
+    known("even 0.2 equality 0.2", of_r);
+    for (int i = 0; i < 5; i++)
+        if (!reference_close(said_after(r.out, equality, keys[i]), of_r[i], 1e-9))
+            fail_msg("%s in %s", keys[i], r.out);
+    assert_true(said_after(r.out, equality, "equality_margin") == 0.2);
+    assert_non_null(strstr(strstr(r.out, equality), "\"verdict\":\"undecided\""));
+    program_free(&r);
+    plan(PLAN("paired_t", "rating", "study", ""));
+    r = FOVSTATS("planned", "s.db", "--json");
+    struct program_result text = FOVSTATS("planned", "s.db");
+    static const char row[] =
+        "How good does it look?, second minus first: regular \u2212 time_warped \u03b5 0.2";
+    assert_true(reference_close(said_after(r.out, row, "estimate"), 5.0 / 11, 1e-12));
+    assert_non_null(strstr(strstr(r.out, row), "\"difference\":true"));
+    assert_non_null(strstr(text.out, row));
+    program_free(&r);
+    program_free(&text);
+}
+
 // Two versions of a protocol with different margins: nobody but people can say which holds.
 static void different_margins_are_no_margin(void **state)
 {
@@ -339,7 +372,8 @@ int main(void)
         cmocka_unit_test(people_of_two_groups_are_compared_between),
         cmocka_unit_test(what_cannot_be_computed_says_why),
         cmocka_unit_test(nothing_planned_is_left_without_a_row),
+        cmocka_unit_test(the_command_says_the_same),
         cmocka_unit_test(different_margins_are_no_margin),
     };
-    return cmocka_run_group_tests(tests, enter_folder, leave_folder);
+    return cmocka_run_group_tests(tests, program_enter_folder, program_leave_folder);
 }
