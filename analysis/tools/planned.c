@@ -175,32 +175,33 @@ static void print_json(const struct sample *sample, const struct loaded *l)
     putchar('\n');
 }
 
-static int run(const struct command *command, int argc, char **argv)
+static int analyse(const struct command *command, const struct study_arguments *arguments,
+                   struct sample *sample)
 {
-    struct study_arguments arguments;
-    struct sample sample;
+    int code;
     struct loaded l;
-    int code = study_arguments_load(command, argc, argv, false, &arguments, &sample);
-    if (code >= 0)
-        return code;
     char error[SAMPLE_ERROR_SIZE];
     bool ok = true;
-    if (!load(&l, &sample, arguments.conf, error, sizeof error)) {
+    if (!load(&l, sample, arguments->conf, error, sizeof error)) {
         code = command_fail(command, EXIT_FAILED, "%s", error);
     } else if (l.plans.count == 0) {
         code = command_fail(command, EXIT_FAILED,
                             "%s: the protocol planned no analysis, or an earlier version recorded the sessions",
-                            store_reader_path(sample.files[0]));
+                            store_reader_path(sample->files[0]));
     } else {
-        if (arguments.json)
-            print_json(&sample, &l);
+        if (arguments->json)
+            print_json(sample, &l);
         else
-            ok = print_text(&sample, &l);
+            ok = print_text(sample, &l);
         code = ok ? command_finish(command) : command_fail(command, EXIT_FAILED, "not enough memory");
     }
     unload(&l);
-    sample_free(&sample);
     return code;
+}
+
+static int run(const struct command *command, int argc, char **argv)
+{
+    return study_arguments_run(command, argc, argv, analyse);
 }
 
 const struct command command_planned = {"planned", "what the protocol planned, with results", help, run};
