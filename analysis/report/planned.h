@@ -9,7 +9,7 @@
 // so its test has a row of its own in that family, and equality counts as shown by Holm's p alone. No
 // difference and a difference beyond the margin cannot both be true, so that both tests of a preference count
 // once, as Shaffer's form of Holm's procedure permits (stats/multiple.h): a margin costs the other tests
-// nothing. What cannot be computed has a row that says why.
+// little. What cannot be computed has a row that says why.
 #ifndef ANALYSIS_REPORT_PLANNED_H
 #define ANALYSIS_REPORT_PLANNED_H
 
