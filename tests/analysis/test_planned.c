@@ -167,6 +167,24 @@ static void equality_is_shown_by_the_adjusted_p_alone(void **state)
     }
 }
 
+// Where somebody chose several times people are tested, for a difference and for equality.
+static void people_are_tested_for_equality_too(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"several cell 0.2", "several equality 0.2", "several cell 0.05",
+                                        "several equality 0.05"};
+    struct loaded l;
+    double worst = 0;
+    study_file_make("s.db", &(struct study_desc){.several = true});
+    plan(PLAN("binomial", "choice", "cell", ",\"margin\":0.1"));
+    load(&l);
+    assert_int_equal(l.planned.row_count, 4);
+    for (size_t i = 0; i < 4; i++)
+        compare(&l.planned.rows[i], names[i], &worst);
+    assert_string_equal(l.planned.rows[1].test, "two one-sided t of the people\u2019s shares");
+    unload(&l);
+}
+
 // Differences of ratings: second minus first, test minus reference, however the plan joins them.
 static void differences_say_what_is_subtracted_from_what(void **state)
 {
@@ -367,6 +385,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(results_agree_with_r),
         cmocka_unit_test(equality_is_shown_by_the_adjusted_p_alone),
+        cmocka_unit_test(people_are_tested_for_equality_too),
         cmocka_unit_test(differences_say_what_is_subtracted_from_what),
         cmocka_unit_test(options_of_a_trial_are_named),
         cmocka_unit_test(people_of_two_groups_are_compared_between),

@@ -3,7 +3,7 @@
 # cell 2 (epsilon 0.05) of persons 1 to 19: i <= 4; both with i %% 7 toggles and after i / 2 seconds. Ratings first and
 # second as in small_study.R. "hand" is a factor between people: odd and even i. Margin of equivalence 0.2, with the
 # 90 % interval. A line: plan and row, estimate, interval, p, Holm's p over all rows of the study, those of equality too,
-# of which and of the row before one hypothesis at most is true (Shaffer 1986); NA where there is none. The last lines are of the same study with 11 of 22 and 9 of 19 for the test option.
+# of which and of the row before one hypothesis at most is true (Shaffer 1986); NA where there is none. The lines "even" are of the same study with 11 of 22 and 9 of 19 for the test option.
 i <- 1:22
 k1 <- as.numeric(i <= 6); k2 <- ifelse(i <= 19, as.numeric(i <= 4), NA)
 first <- c(6, 7, 5, 8, 6, 4, 6, 7, 9, 6, 6, 6, 9, 5, 8, 6, 4, 7, 6, 6)
@@ -68,6 +68,17 @@ for (margin in c(0.2, 0.3)) {
   }
   out <- c(out, mapply(line, rows, holm_of(rows)))
 }
+# Nine choices of each person in one cell (study_desc.several): people are tested.
+shares <- ((i <= 6) + pmin(8, (5 * i) %% 9)) / 9
+rows <- list()
+of_t("several cell 0.2", t.test(shares, mu = 0.5), flip_p(round(18 * shares) - 9))
+ends <- t.test(shares, conf.level = 0.9)$conf.int
+add("several equality 0.2", mean(shares), ends[1], ends[2], max(t.test(shares, mu = 0.4, alternative = "greater")$p.value,
+                                                                t.test(shares, mu = 0.6, alternative = "less")$p.value))
+b <- binom.test(4, 19)
+add("several cell 0.05", 4 / 19, b$conf.int[1], b$conf.int[2], b$p.value)
+equality("several equality 0.05", 4, 19, 0.1)
+out <- c(out, mapply(line, rows, holm_of(rows)))
 p <- c(tost(11, 22), tost(9, 19)) # as fovstats choices has them: over its cells
 out <- c(out, sprintf("choices equality cell %s,%.17g,%.17g", c("0.2", "0.05"), p, p.adjust(p, "holm")))
 writeLines(c("row,estimate,low,high,p,holm", gsub("NA", "nan", out)), "planned.csv")
