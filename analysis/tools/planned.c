@@ -118,6 +118,10 @@ static bool print_text(const struct sample *sample, const struct loaded *l)
         ok = print_plan(l, i) && ok;
     printf("Holm p: adjusted for the %zu %s above, the planned family. A large p does not show equality.\n",
            l->planned.tested, l->planned.tested == 1 ? "test" : "tests");
+    if (planned_equality(&l->planned))
+        puts("The test of equality and that of a difference before it count once (Shaffer 1986); both verdicts "
+             "are by "
+             "Holm's p.");
     study_notes(sample);
     return ok;
 }

@@ -84,6 +84,8 @@ static const char *contradiction(const struct power_plan *plan, const char *leve
     if (difference && rehearsal)
         return "takes no study file for a difference of ratings: its power does not depend on what was "
                "recorded";
+    if (rehearsal && plan->choices != 1)
+        return "takes --choices or a study file that has them, not both";
     if (!isnan(plan->d) && !isnan(plan->difference))
         return "takes --d or --difference with --sd, not both";
     if (!isnan(plan->difference) && isnan(plan->sd))

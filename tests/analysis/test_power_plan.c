@@ -206,6 +206,8 @@ static void wrong_use(void **state)
         {{"power", "--f", "0.2", "--share", "0.7"}, "are of choices"},
         {{"power", "--unpaired", "--share", "0.7"}, "--unpaired goes with"},
         {{"power", "x.db", "--d", "1"}, "takes no study file for a difference of ratings"},
+        {{"power", "x.db", "--share", "0.7", "--choices", "4", "--participants", "9"},
+         "takes --choices or a study file"},
         {{"power", "--margin", "0.6"}, "--margin is 0.6"},
         {{"power", "--margin", "0"}, "--margin is 0"},
         {{"power", "--margin", "0.1", "--alpha", "0.6"}, "--alpha is 0.6"},
