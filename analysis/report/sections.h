@@ -73,7 +73,7 @@ void report_planned_methods(const struct report *r); // sentences
 void report_choices(const struct report *r);
 void report_equivalence(const struct report *r);    // by the protocol's margin
 void report_choice_three(const struct report *r);   // where "equal" was an answer
-void report_choice_factors(const struct report *r); // levels compared, where people did not answer several
+void report_choice_factors(const struct report *r); // levels compared, but for several answers within people
 void report_people(const struct report *r);         // cells with several answers per person
 void report_cell_words(const struct choice_cell *cell, char out[256]);
 void report_toggles(const struct report *r);
