@@ -21,16 +21,20 @@ static size_t count_people(const struct sample *sample)
     return count;
 }
 
-// Where a cell is not everybody's, the sizes are of those who get it.
+// Where a cell is not everybody's, the sizes are of those who get it, and of them of those whose answers count.
 static void name_cell(const struct choice_cell *cell, size_t everybody, char out[320])
 {
     size_t none = 0;
     for (size_t i = 0; i < cell->people; i++)
         none += cell->counts[i].n == 0;
     int length = snprintf(out, 320, "%.60s: %.100s", cell->block, cell->label);
-    if (cell->people < everybody)
-        length += snprintf(out + length, 320 - (size_t)length,
-                           " (of the participants who get this cell: %zu of %zu)", cell->people, everybody);
+    if (cell->planned_count < everybody)
+        length +=
+            snprintf(out + length, 320 - (size_t)length, " (of the participants who get this cell: %zu of %zu)",
+                     cell->planned_count, everybody);
+    if (cell->people < cell->planned_count)
+        length += snprintf(out + length, 320 - (size_t)length, " (of those whose answers count: %zu of %zu)",
+                           cell->people, cell->planned_count);
     if (none)
         snprintf(out + length, 320 - (size_t)length, " (%zu of %zu people choose neither)", none, cell->people);
 }

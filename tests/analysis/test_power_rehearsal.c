@@ -26,7 +26,7 @@ static void says(const struct program_result *r, const char *part, bool whether)
         fail_msg("\"%s\" is%s in %s", part, whether ? " not" : "", r->out);
 }
 
-// Nine choices of each person in the one cell, one in the other, which is not everybody's.
+// Nine choices of each person in the one cell, one in the other, where the trials of three are invalid.
 static void cells_take_the_choices_of_people(void **state)
 {
     (void)state;
@@ -35,22 +35,32 @@ static void cells_take_the_choices_of_people(void **state)
                                        "22", "--sd", "0.5", "--json");
     assert_int_equal(r.code, 0);
     double several = said_after(r.out, "epsilon 0.2\"", "power"),
-           one = said_after(r.out, "epsilon 0.05 (of the participants who get this cell: 19 of 22)\"", "power");
+           one = said_after(r.out, "epsilon 0.05 (of those whose answers count: 19 of 22)\"", "power");
     assert_true(several > 0.99 && fabs(one - 0.516797834436943) < 1e-12); // power_simulation.csv
     assert_non_null(strstr(r.out, "\"data_sha256\":\""));
     assert_true(said_after(r.out, "\"simulates\":true", "studies") == 2000);
     program_free(&r);
 }
 
-// Who is excluded gets no cell, and is none of those who might.
+// A cell of the even people alone. Who is excluded gets no cell, and is none of those who might.
 static void sizes_are_of_those_who_get_a_cell(void **state)
 {
     (void)state;
-    study_file_make("x.db", &(struct study_desc){.excluded = true});
-    struct program_result r = FOVSTATS("power", "x.db", "--share", "0.75", "--participants", "22");
-    says(&r, "epsilon 0.2; exact binomial", true); // all 21
-    says(&r, "epsilon 0.05 (of the participants who get this cell: 19 of 21); exact binomial", true);
-    program_free(&r);
+    for (int excluded = 0; excluded < 2; excluded++) { // the 22nd
+        study_file_make("x.db", &(struct study_desc){.excluded = excluded});
+        study_file_sql("x.db",
+                       "DELETE FROM choice WHERE trial_id % 20 = 12; DELETE FROM trial WHERE id % 20 = 12");
+        struct program_result r = FOVSTATS("power", "x.db", "--share", "0.75", "--participants", "22");
+        says(&r, "epsilon 0.2; exact binomial", true); // everybody's
+        says(&r,
+             excluded
+                 ? "epsilon 0.05 (of the participants who get this cell: 10 of 21) (of those whose answers "
+                   "count: 9 of 10); exact binomial"
+                 : "epsilon 0.05 (of the participants who get this cell: 11 of 22) (of those whose answers "
+                   "count: 9 of 11); exact binomial",
+             true);
+        program_free(&r);
+    }
 }
 
 static void what_is_exact_is_not_called_simulated(void **state)
@@ -123,7 +133,7 @@ static void cells_without_a_choice_are_said(void **state)
                           json = FOVSTATS("power", "equal.db", "--share", "0.75", "--participants", "22",
                                           "--json");
     says(&r, "epsilon 0.2; not planned: everybody chose neither", true);
-    says(&r, "epsilon 0.05 (of the participants who get this cell: 19 of 22); exact binomial", true);
+    says(&r, "epsilon 0.05 (of those whose answers count: 19 of 22); exact binomial", true);
     says(&json, "\"method\":\"not planned: everybody chose neither\",\"sizes\":[]", true);
     program_free(&r);
     program_free(&json);
