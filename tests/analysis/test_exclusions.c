@@ -160,7 +160,7 @@ static void what_if(void **state)
     // Thurstone's case V, 1 JOD at 75 %: qnorm(k / n) / qnorm(3 / 4) of 6 of 22, 5 of 20 and 4 of 19 in R
     expect(table, "<td>-0.90 JOD</td><td>\u2013</td><td>-1.00 JOD</td><td>\u2013</td><td>-1.19 JOD</td>");
     expect(table, ">scale, main: ");
-    expect(table, ": first ratings compared</th>");
+    expect(table, ": first ratings, regular minus ");
     expect(table, "(n 20)"); // all data: 11 and 9
     expect(table, "(n 19)"); // these rules: without person 3
     expect(table, "(n 18)"); // and stricter, without person 1
