@@ -10,8 +10,10 @@ static void p_words(const struct report *r, const char *test, const struct check
     char p[24], holm[24];
     html_p_value(p, b->p_value);
     html_p_value(holm, b->holm);
-    html_printf(r->out, "%s p %s%s, with Holm\u2019s correction for these two checks %s). ", test,
-                p[0] == '<' ? "" : "= ", p, holm);
+    html_printf(r->out, "%s p %s%s", test, p[0] == '<' ? "" : "= ", p);
+    if (!isnan(r->checks.side.p_value) && !isnan(r->checks.first.p_value))
+        html_printf(r->out, ", with Holm\u2019s correction for these two checks %s", holm);
+    fputs("). ", r->out);
 }
 
 static void bias_sentence(const struct report *r, const char *what, const struct check_bias *b)
@@ -79,14 +81,25 @@ void report_checks(const struct report *r)
             r->out,
             "In null trials both options are the same, so a side that is chosen more often is a bias. ");
         bias_sentence(r, "Slot a", &c->side);
-        bias_sentence(r, "The option shown first", &c->first);
+        if (c->first_unknown < c->nulls)
+            bias_sentence(r, "The option shown first", &c->first);
         fputs("A large p does not show that there is no bias. ", r->out);
     }
+    if (c->first_unknown)
+        html_printf(
+            r->out,
+            "In %" PRId64 " of %" PRId64
+            " null trials it is not recorded which option was shown first; they say nothing of the order. ",
+            c->first_unknown, c->nulls);
     if (c->null_equal)
         html_printf(r->out, "\u201cEqual\u201d was answered in %" PRId64 " null trials. ", c->null_equal);
     if (c->catches)
-        html_printf(r->out, "Of %" PRId64 " catch trials with an obvious difference %" PRId64 " were missed.",
+        html_printf(r->out, "Of %" PRId64 " catch trials with an obvious difference %" PRId64 " were missed. ",
                     c->catches, c->missed);
+    if (c->catch_unknown)
+        html_printf(r->out,
+                    "Catch trials left out, since the file does not tell which answer was right: %" PRId64 ".",
+                    c->catch_unknown);
     fputs("</p>\n", r->out);
     people_table(r);
 }
