@@ -6,6 +6,13 @@
 #include <math.h>
 #include <string.h>
 
+static void p_cell(FILE *out, double p)
+{
+    char text[24];
+    html_p_value(text, p);
+    html_cell(out, "td", "%s", isnan(p) ? "\u2013" : text);
+}
+
 static const struct choice_cell *same_cell(const struct choices *in, const struct choice_cell *cell)
 {
     for (size_t i = 0; i < in->cell_count; i++) {
@@ -19,15 +26,13 @@ static const struct choice_cell *same_cell(const struct choices *in, const struc
 
 static void choice_cells(FILE *out, const struct choice_cell *cell)
 {
-    char p[24];
     if (!cell || cell->n == 0) {
         html_cell(out, "td", "none");
         html_cell(out, "td", "\u2013");
         return;
     }
-    html_p_value(p, cell->p_value);
     html_cell(out, "td", "%" PRId64 " of %" PRId64, cell->chosen, cell->n);
-    html_cell(out, "td", "%s", p);
+    p_cell(out, cell->p_value);
 }
 
 static const struct rating_question *same_question(const struct ratings *in, const struct rating_question *q)
@@ -49,15 +54,13 @@ static const struct rating_group *same_group(const struct rating_question *q, co
 
 static void test_cells(FILE *out, const struct stat_ttest *test, size_t n)
 {
-    char p[24];
     if (!test || n == 0) {
         html_cell(out, "td", "none");
         html_cell(out, "td", "\u2013");
         return;
     }
-    html_p_value(p, test->p_value);
     html_cell(out, "td", "%+.2f (n %zu)", test->estimate, n);
-    html_cell(out, "td", "%s", p);
+    p_cell(out, test->p_value);
 }
 
 // A comparison of first ratings is that of `like` only where the same two orders are compared.
@@ -152,15 +155,13 @@ static const struct stat_anova_effect *find_effect(const struct ratings *in, con
 
 static void effect_cells(FILE *out, const struct stat_anova_effect *e, size_t people)
 {
-    char p[24];
-    html_p_value(p, e ? e->p_gg : (double)NAN);
     if (!e)
         html_cell(out, "td", "none");
     else if (isnan(e->f))
-        html_cell(out, "td", "cannot be tested (n %zu)", people);
+        html_cell(out, "td", "no F (n %zu)", people);
     else
         html_cell(out, "td", "F = %.2f (n %zu)", e->f, people);
-    html_cell(out, "td", "%s", e && !isnan(e->f) ? p : "\u2013");
+    p_cell(out, e ? e->p_gg : (double)NAN);
 }
 
 // Of the rules `set` those effects that no set before it has: an analysis may become possible by an exclusion.

@@ -12,9 +12,9 @@ static void estimate_cells(FILE *out, const struct threshold_cell *cell, bool fi
     if (!mean || mean->of.n == 0)
         html_cell(out, "td", "not estimable");
     else if (cell->pooled)
-        html_cell(out, "td", "%.3g (one function of %zu people)", mean->of.mean, cell->pooled);
+        html_cell(out, "td", "%.3g (%zu together)", mean->of.mean, cell->pooled);
     else
-        html_cell(out, "td", "%.3g (n %zu of %zu)", mean->of.mean, mean->of.n, cell->person_count);
+        html_cell(out, "td", "%.3g (%zu of %zu)", mean->of.mean, mean->of.n, cell->person_count);
     html_cell(out, "td", "\u2013");
 }
 
@@ -41,9 +41,9 @@ static void threshold_row(const struct report *r, const struct threshold_cell *c
     fputs("<tr>", r->out);
     html_cell(r->out, "th scope=\"row\" class=\"word\"", "threshold of %s, %s: %s, %s", parameter, cell->block,
               cell->words,
-              !fits          ? "mean over the staircases\u2019 own"
-              : cell->pooled ? "fitted to all people"
-                             : "mean over fits");
+              !fits          ? "mean of people by the staircase"
+              : cell->pooled ? "one function of all people"
+                             : "mean of people by the fit");
     for (int k = 0; k < 3; k++)
         estimate_cells(r->out, same_threshold(in[k], cell), fits);
     fputs("</tr>\n", r->out);

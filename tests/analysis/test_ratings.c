@@ -299,39 +299,6 @@ static void what_cannot_be_analysed_is_said(void **state)
     expect_in_text("c.db", "it takes two participants with a rating in each of the 6 cells, and there is 1");
 }
 
-// Everybody rates y 2 above x, and v a little above or below u: the first effect has no F, which is not none.
-static void a_perfect_effect_is_not_called_none(void **state)
-{
-    (void)state;
-    static const char perfect[] =
-        "CREATE TABLE made AS WITH n(k) AS (SELECT 0 UNION ALL SELECT k + 1 FROM n WHERE k < 19) SELECT k / 4 "
-        "+ 1 "
-        "AS i, k / 2 % 2 AS lv, k % 2 AS g, 1000 + k AS id FROM n;"
-        "INSERT INTO trial SELECT id, i, i, 100 + id % 4, 'b', 'rate', 'town', '{}', json_object('lv', iif(lv, "
-        "'y', "
-        "'x'), 'g', iif(g, 'v', 'u')), 2, NULL, 'a', NULL, NULL, 1, NULL, 'done', 1, 0, 1 FROM made;"
-        "INSERT INTO rating SELECT NULL, id, NULL, i, 'q', 'scene', 2, 2 + i % 4 + 2 * lv + g * (i % 3 - 1), "
-        "1, 10, "
-        "5 FROM made;";
-    study_file_make("p.db", &(struct study_desc){.bare = true});
-    study_file_sql("p.db", perfect);
-    expect_in_text("p.db", "lv cannot be tested: everybody's ratings differ by the same");
-    expect_in_report("p.db", (const char *const[]){"<p>lv cannot be tested: everybody\u2019s ratings differ",
-                                                   "No other factor by itself shows an effect", NULL});
-    study_file_sql("p.db",
-                   "UPDATE rating SET value = 2 + segment_id % 4 + 2 * (SELECT lv FROM made WHERE id = "
-                   "trial_id); INSERT INTO exclusion VALUES(NULL, NULL, 5, NULL, 'manual', 'planned', 'r', "
-                   "'us', '2026')");
-    expect_in_text("p.db", "lv, g cannot be tested");
-    expect_in_report("p.db", (const char *const[]){"<p>lv, g cannot be tested", "<td>no spread</td>",
-                                                   "q, b: lv</th><td>cannot be tested (n 5)</td><td>\u2013</td>"
-                                                   "<td>cannot be tested (n 4)</td>",
-                                                   NULL});
-    char *page = slurp("r.html");
-    assert_null(strstr(page, "factor by itself shows an effect"));
-    free(page);
-}
-
 static void not_finite_is_said(void **state)
 {
     (void)state;
@@ -354,7 +321,6 @@ int main(void)
                                        cmocka_unit_test(the_report_shows_them),
                                        cmocka_unit_test(other_rules_change_them),
                                        cmocka_unit_test(what_cannot_be_analysed_is_said),
-                                       cmocka_unit_test(a_perfect_effect_is_not_called_none),
                                        cmocka_unit_test(not_finite_is_said)};
     return cmocka_run_group_tests(tests, program_enter_folder, program_leave_folder);
 }

@@ -32,7 +32,7 @@ static char *table_of(const char *db)
     fclose(file);
     const char *table = strstr(page, "<h3>What if</h3>");
     assert_non_null(table);
-    const char *end = strstr(table, "<h3>Sessions</h3>");
+    const char *end = strstr(table, "<caption>Sessions");
     char *copy = end ? strndup(table, (size_t)(end - table)) : strdup(table);
     free(page);
     return copy;
@@ -61,13 +61,12 @@ static void each_threshold_is_its_own(void **state)
         "reaction_ns, answered_ns, toggles FROM choice WHERE trial_id IN (SELECT id FROM trial WHERE block "
         "= 'liked')");
     char *table = table_of("s.db");
-    const char *dose = "<td>3.41 (one function of 20 people)</td>" DASH,
-               *fovea = "<td>34.1 (one function of 20 people)</td>" DASH;
+    const char *dose = "<td>3.41 (20 together)</td>" DASH, *fovea = "<td>34.1 (20 together)</td>" DASH;
     char cells[256];
     snprintf(cells, sizeof cells, "%s%s%s", dose, dose, dose);
-    expect_row(table, "threshold of dose, liked: all, fitted to all people", cells);
+    expect_row(table, "threshold of dose, liked: all, one function of all people", cells);
     snprintf(cells, sizeof cells, "%s%s%s", fovea, fovea, fovea);
-    expect_row(table, "threshold of fovea, liked: all, fitted to all people", cells);
+    expect_row(table, "threshold of fovea, liked: all, one function of all people", cells);
     free(table);
 }
 
@@ -77,13 +76,13 @@ static void staircases_have_their_own_estimates(void **state)
     (void)state;
     staircase_file_make("s.db");
     char *table = table_of("s.db");
-    expect_row(table, "threshold of fovea (\u00b0), stairs: scene town, mean over the staircases\u2019 own",
-               "<td>5.62 (n 4 of 5)</td>" DASH "<td>4.5 (n 3 of 4)</td>" DASH "<td>4.5 (n 3 of 4)</td>" DASH);
+    expect_row(table, "threshold of fovea (\u00b0), stairs: scene town, mean of people by the staircase",
+               "<td>5.62 (4 of 5)</td>" DASH "<td>4.5 (3 of 4)</td>" DASH "<td>4.5 (3 of 4)</td>" DASH);
     assert_non_null(strstr(table, "A staircase\u2019s own estimate has seen each of its trials"));
     // On a scale there are no right answers to fit anything to.
-    expect_row(table, "threshold of fovea (\u00b0), graded: all, mean over the staircases\u2019 own",
-               "<td>1.5 (n 1 of 1)</td>" DASH "<td>1.5 (n 1 of 1)</td>" DASH "<td>1.5 (n 1 of 1)</td>" DASH);
-    assert_null(strstr(table, "graded: all, mean over fits"));
+    expect_row(table, "threshold of fovea (\u00b0), graded: all, mean of people by the staircase",
+               "<td>1.5 (1 of 1)</td>" DASH "<td>1.5 (1 of 1)</td>" DASH "<td>1.5 (1 of 1)</td>" DASH);
+    assert_null(strstr(table, "graded: all, mean of people by the fit"));
     free(table);
 }
 

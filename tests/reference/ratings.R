@@ -95,7 +95,7 @@ change <- c(1, 3, 1, 1, 1, 1, 1, -2, -1, 0, 0)
 stopifnot(enumerate(change) != enumerate(change, TRUE))
 add("changed.rank_p", enumerate(change))
 add("changed.pratt_p", enumerate(change, TRUE))
-# Before and after with a repeated trial (test_ratings_order.c): who saw time_warped first, rated regular and then
+# Before and after with a repeated trial (test_ratings_edges.c): who saw time_warped first, rated regular and then
 # time_warped again has no first rating. first, second of persons 3 and 5, and of 2, 4 and 6:
 test <- list(first = c(7, 6), second = c(8, 9)); regular <- list(first = c(6, 5, 7), second = c(7, 8, 9))
 for (name in c("test", "regular")) {

@@ -1,5 +1,5 @@
-// Ratings before and after: who is in which order where a trial was repeated, ties over several sittings, and
-// small p in words; against tests/reference/ratings.R.
+// Ratings at their edges: who is in which order where a trial was repeated, ties over several sittings, small p
+// in words, effects without an F; against tests/reference/ratings.R.
 #include "program.h"
 #include "reference.h"
 #include "said.h"
@@ -159,11 +159,53 @@ static void a_small_p_is_a_bound(void **state)
     program_free(&r);
 }
 
+static void expect_text(const char *db, const char *part)
+{
+    struct program_result r = FOVSTATS("ratings", db);
+    if (r.code != 0 || !strstr(r.out, part))
+        fail_msg("exit %d, no \"%s\" in %s%s", r.code, part, r.out, r.err);
+    program_free(&r);
+}
+
+// Everybody rates y 2 above x, and v a little above or below u: the first effect has no F, which is not none.
+static void a_perfect_effect_is_not_called_none(void **state)
+{
+    (void)state;
+    static const char perfect[] =
+        "CREATE TABLE made AS WITH n(k) AS (SELECT 0 UNION ALL SELECT k + 1 FROM n WHERE k < 19) SELECT k / 4 "
+        "+ 1 "
+        "AS i, k / 2 % 2 AS lv, k % 2 AS g, 1000 + k AS id FROM n;"
+        "INSERT INTO trial SELECT id, i, i, 100 + id % 4, 'b', 'rate', 'town', '{}', json_object('lv', iif(lv, "
+        "'y', "
+        "'x'), 'g', iif(g, 'v', 'u')), 2, NULL, 'a', NULL, NULL, 1, NULL, 'done', 1, 0, 1 FROM made;"
+        "INSERT INTO rating SELECT NULL, id, NULL, i, 'q', 'scene', 2, 2 + i % 4 + 2 * lv + g * (i % 3 - 1), "
+        "1, 10, "
+        "5 FROM made;";
+    study_file_make("f.db", &(struct study_desc){.bare = true});
+    study_file_sql("f.db", perfect);
+    expect_text("f.db", "lv cannot be tested: everybody's ratings differ by the same");
+    char *page = page_of("f.db");
+    assert_non_null(strstr(page, "<p>lv cannot be tested: everybody\u2019s ratings differ"));
+    assert_non_null(strstr(page, "No other factor by itself shows an effect"));
+    free(page);
+    study_file_sql("f.db",
+                   "UPDATE rating SET value = 2 + segment_id % 4 + 2 * (SELECT lv FROM made WHERE id = "
+                   "trial_id); INSERT INTO exclusion VALUES(NULL, NULL, 5, NULL, 'manual', 'planned', 'r', "
+                   "'us', '2026')");
+    expect_text("f.db", "lv, g cannot be tested");
+    page = page_of("f.db");
+    assert_non_null(strstr(page, "<p>lv, g cannot be tested"));
+    assert_non_null(strstr(page, "<td>no spread</td>"));
+    expect_row(page, "q, b: lv", "<td>no F (n 5)</td><td>\u2013</td><td>no F (n 4)</td><td>\u2013</td>");
+    assert_null(strstr(page, "factor by itself shows an effect"));
+    free(page);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(who_saw_both_has_no_first_rating),
-                                       cmocka_unit_test(planned_tests_have_the_same_people),
-                                       cmocka_unit_test(sittings_do_not_break_ties),
-                                       cmocka_unit_test(a_small_p_is_a_bound)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(who_saw_both_has_no_first_rating),
+        cmocka_unit_test(planned_tests_have_the_same_people), cmocka_unit_test(sittings_do_not_break_ties),
+        cmocka_unit_test(a_small_p_is_a_bound), cmocka_unit_test(a_perfect_effect_is_not_called_none)};
     return cmocka_run_group_tests(tests, program_enter_folder, program_leave_folder);
 }
