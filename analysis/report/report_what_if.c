@@ -210,7 +210,8 @@ void report_what_if(const struct report *r)
     if (r->sample->exclusion_count == 0)
         return;
     fputs("<h3>What if</h3>\n<p>The same tests on all data, under the rules that hold (planned and late), and "
-          "with the stricter ones too.</p>\n<div class=\"table\" tabindex=\"0\" role=\"region\" "
+          "with the stricter ones too. In brackets: people, of thresholds those who have one. A dash: no "
+          "p.</p>\n<div class=\"table\" tabindex=\"0\" role=\"region\" "
           "aria-label=\"What if\"><table class=\"wrap\">\n<caption>Answers for the test option or right ones, "
           "difference of ratings, F, threshold or JOD, and p (of F: p GG)</caption>\n<thead><tr><th "
           "scope=\"col\" class=\"word\">test</th><th scope=\"col\">all data</th><th scope=\"col\">p</th><th "
