@@ -141,7 +141,8 @@ static bool add_trial(void *user, const struct store_trial_row *row)
         return false;
     c->answers++;
     c->equal += row->chosen == '=';
-    c->chosen_first += row->chosen_first;
+    c->chosen_first += row->chosen_first == 1;
+    c->first_known += row->chosen != '=' && row->chosen_first >= 0;
     c->chosen_a += row->chosen_a;
     return true;
 }

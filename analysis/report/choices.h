@@ -99,6 +99,7 @@ struct choices {
     struct choice_contrast *contrasts;
     int64_t answers, equal; // in all cells; of them "equal"
     int64_t chosen_first, chosen_a;
+    int64_t first_known;         // answers for an option of which it is known what was shown first
     struct stat_moments toggles; // over all such answers
     double reaction_median_s;
     // Left out, by the first reason that holds:

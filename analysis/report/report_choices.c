@@ -291,12 +291,17 @@ void report_toggles(const struct report *r)
         html_printf(r->out, "%.2f switches before a decision (SD %.2f) over %zu answers. ", c->toggles.mean,
                     c->toggles.sd, c->toggles.n);
     int64_t decided = c->answers - c->equal;
-    if (decided)
-        html_printf(r->out,
-                    "Over all %" PRId64 " answers for an option: the one shown first was chosen "
-                    "in %" PRId64 " (%.0f\u00a0%%), the one in slot a in %" PRId64 " (%.0f\u00a0%%).",
-                    decided, c->chosen_first, 100 * (double)c->chosen_first / (double)decided, c->chosen_a,
+    if (decided) {
+        html_printf(r->out, "Over all %" PRId64 " answers for an option: ", decided);
+        if (c->first_known)
+            html_printf(r->out, "the one shown first was chosen in %" PRId64 " (%.0f\u00a0%%), ",
+                        c->chosen_first, 100 * (double)c->chosen_first / (double)c->first_known);
+        html_printf(r->out, "the one in slot a in %" PRId64 " (%.0f\u00a0%%).", c->chosen_a,
                     100 * (double)c->chosen_a / (double)decided);
+        if (c->first_known < decided)
+            html_printf(r->out, " Of %" PRId64 " it is not known which was shown first.",
+                        decided - c->first_known);
+    }
     fputs("</p>\n", r->out);
     toggles_table(r);
 }

@@ -95,7 +95,10 @@ static void means_table(const struct report *r, const struct factorial *f)
             html_cell(r->out, "th scope=\"row\" class=\"word\"", "%s", k ? "" : factor->name);
             html_cell(r->out, "td class=\"word\"", "%s", factor->levels[k]);
             number(r->out, "%.2f", factor->mean[k]);
-            html_cell(r->out, "td", "%.2f to %.2f", factor->mean[k] - half, factor->mean[k] + half);
+            if (isnan(f->anova.effects[j].p_gg))
+                html_cell(r->out, "td", "no spread");
+            else
+                html_cell(r->out, "td", "%.2f to %.2f", factor->mean[k] - half, factor->mean[k] + half);
             fputs("</tr>\n", r->out);
         }
     close_table(r->out);
@@ -120,6 +123,29 @@ static void pair_row(FILE *out, const struct factorial_factor *factor, const str
     fputs("</tr>\n", out);
 }
 
+static void pairs_words(const struct report *r, const struct factorial *f, bool any)
+{
+    char names[256];
+    size_t untested = factorial_untested(f, names);
+    fputs("<p>", r->out);
+    if (any)
+        fputs("p Holm: adjusted over the pairs of that factor. ", r->out);
+    if (untested)
+        html_printf(
+            r->out,
+            "%s cannot be tested: everybody\u2019s ratings differ by the same between levels, so that there "
+            "is nothing to hold an effect against, however large it is; see the means. ",
+            names);
+    if (any)
+        fputs("Levels of factors that show no effect are not compared.", r->out);
+    else if (untested < f->factor_count)
+        fprintf(r->out,
+                "No %sfactor by itself shows an effect, so %s levels are not compared; that does not show that "
+                "they are alike.",
+                untested ? "other " : "", untested ? "their" : "its");
+    fputs("</p>\n", r->out);
+}
+
 static void pairs_tables(const struct report *r, const struct factorial *f)
 {
     char ci[32];
@@ -139,13 +165,7 @@ static void pairs_tables(const struct report *r, const struct factorial *f)
             pair_row(r->out, factor, &factor->pairs[i]);
         close_table(r->out);
     }
-    fputs(
-        any ? "<p>p Holm: adjusted over the pairs of that factor. Levels of factors that show no effect are "
-              "not "
-              "compared.</p>\n"
-            : "<p>No factor by itself shows an effect, so its levels are not compared; that does not show that "
-              "they are alike.</p>\n",
-        r->out);
+    pairs_words(r, f, any);
 }
 
 static void left_out(const struct report *r, const struct factorial *f)

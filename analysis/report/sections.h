@@ -95,6 +95,7 @@ void report_gaze(const struct report *r);
 void report_checks(const struct report *r);         // null and catch trials
 void report_what_if(const struct report *r);        // the same tests under other exclusions
 void report_what_if_scales(const struct report *r); // its rows of thresholds and JOD
+void report_what_if_notes(const struct report *r);  // what stands below it
 bool report_quality(const struct report *r, char *error, size_t error_size);
 void report_bench(const struct report *r);
 bool report_draw_bench(struct report *r, char *error, size_t error_size);

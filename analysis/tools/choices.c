@@ -197,6 +197,7 @@ static bool print_json(const struct sample *sample, const struct choices *c, con
     json_number(&json, "toggles_mean", c->toggles.mean);
     json_number(&json, "toggles_sd", c->toggles.sd);
     json_integer(&json, "chosen_first_shown", c->chosen_first);
+    json_integer(&json, "first_shown_known", c->first_known);
     json_integer(&json, "chosen_slot_a", c->chosen_a);
     json_open(&json, "left_out", '{');
     json_integer(&json, "excluded", c->excluded);

@@ -14,6 +14,7 @@ static const char help[] =
     "Preferences on one scale per block: just-objectionable differences (JOD) from the reference, by "
     "Thurstone's\n"
     "case V and maximum likelihood. One JOD apart is 75 % preference; negative is worse than the reference.\n"
+    "The reference is the option that most trials of the block had for theirs, excluded trials too.\n"
     "Intervals by a bootstrap over people (1000 replicates, one seed). An option that was preferred always or\n"
     "never has no maximum of the likelihood: it is not estimable without a prior, and none is put on it.\n"
     "  --conf C     confidence of the intervals (0.95)\n"

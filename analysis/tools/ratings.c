@@ -1,4 +1,5 @@
 #include "analysis/report/ratings.h"
+#include "analysis/report/html.h"
 
 #include "analysis/tools/arguments.h"
 #include "analysis/tools/ratings_parts.h"
@@ -95,6 +96,8 @@ static bool print_question(const struct sample *sample, const struct rating_ques
     ok = print_ranks(sample, q, conf) && ok;
     const struct stat_ttest *w = &q->first_between;
     const struct stat_effect *d = &q->between_effect;
+    char p[24];
+    html_p_value(p, w->p_value);
     if (q->overlap)
         puts("First ratings are not compared: somebody rated in both orders.");
     else if (q->compared && isnan(w->p_value))
@@ -102,17 +105,20 @@ static bool print_question(const struct sample *sample, const struct rating_ques
                "possible.\n",
                w->estimate);
     else if (q->compared)
-        printf(
-            "First ratings, %s minus %s: %.2f, %g %% CI %.2f to %.2f, t(%.2f) = %.3f, p %.4f (Welch), d %.2f, "
-            "%g %% CI %.2f to %.2f\n",
-            label(sample, q->groups[0].first_condition), label(sample, q->groups[1].first_condition),
-            w->estimate, 100 * conf, w->ci_low, w->ci_high, w->df, w->t, w->p_value, d->d, 100 * conf,
-            d->ci_low, d->ci_high);
+        printf("First ratings, %s minus %s: %.2f, %g %% CI %.2f to %.2f, t(%.2f) = %.3f, p %s (Welch), d %.2f, "
+               "%g %% CI %.2f to %.2f\n",
+               label(sample, q->groups[0].first_condition), label(sample, q->groups[1].first_condition),
+               w->estimate, 100 * conf, w->ci_low, w->ci_high, w->df, w->t, p, d->d, 100 * conf, d->ci_low,
+               d->ci_high);
     else
         printf("First ratings are not compared: that needs two order groups, there %s %zu.\n",
                q->group_count == 1 ? "is" : "are", q->group_count);
     if (q->unpaired)
         printf("Left out, sessions without two ratings of different options: %" PRId64 ".\n", q->unpaired);
+    if (q->late_first)
+        printf("Left out, sessions whose rating planned as the first was given after the second, when both "
+               "options had been seen: %" PRId64 ".\n",
+               q->late_first);
     putchar('\n');
     return ok;
 }
@@ -178,6 +184,7 @@ static void print_json(const struct sample *sample, const struct ratings *r)
             ratings_effect_json(&json, "first_between_groups_d", &q->between_effect);
         }
         json_integer(&json, "unpaired_sessions", q->unpaired);
+        json_integer(&json, "first_rated_last_sessions", q->late_first);
         json_close(&json, '}');
     }
     json_close(&json, ']');

@@ -65,7 +65,7 @@ struct store_trial_row {
     // The answer, where there is one:
     int64_t choice_id; // 0: none
     char chosen;       // 't' test, 'r' reference, '=' equal, '?' no test slot; 0: no answer
-    bool chosen_first; // the option that was shown first
+    int chosen_first;  // the option that was shown first: 1, 0, or -1: not known
     bool chosen_a;     // slot a
     int correct;       // 1, 0, or -1: a preference, or no answer
     double reaction_s; // NaN: not known

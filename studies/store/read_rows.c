@@ -167,7 +167,7 @@ static bool trial_row(sqlite3_stmt *s, const struct call *call)
         .choice_id = sqlite3_column_int64(s, 11),
         .reaction_s = real(s, 13),
         .toggles = sqlite3_column_int64(s, 14),
-        .chosen_first = sqlite3_column_int(s, 15),
+        .chosen_first = sqlite3_column_type(s, 15) == SQLITE_NULL ? -1 : sqlite3_column_int(s, 15),
         .chosen_a = strcmp(chosen, "a") == 0,
         .correct = sqlite3_column_type(s, 17) == SQLITE_NULL ? -1 : sqlite3_column_int(s, 17),
         .attempt = sqlite3_column_int64(s, 18),
