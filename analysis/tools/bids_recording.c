@@ -19,6 +19,10 @@ static const struct column sample_columns[] = {
     {"valid", NULL, "Whether the tracker had a direction: 1 yes, 0 no."},
     {"confidence", NULL, "The tracker's confidence, 0 to 1."},
     {"trial_id", NULL, "The trial the sample belongs to; n/a between trials."},
+    {"attempt", NULL,
+     "Attempt at the trial, from 1; an interrupted trial begins anew with the next. n/a: of no trial, from "
+     "before "
+     "its first attempt, or of an interrupted attempt that is not known."},
     {NULL, NULL, NULL},
 };
 
@@ -101,7 +105,8 @@ static bool describe_events(struct bids *b, size_t run, size_t eye)
         return false;
     snprintf(
         text, sizeof text,
-        "Fixations and saccades found by fovstats " FOVSTUDY_VERSION ", not by the tracker: I-VT (Salvucci & "
+        "Fixations and saccades of last attempts and between trials, found by fovstats " FOVSTUDY_VERSION
+        ", not by the tracker: I-VT (Salvucci & "
         "Goldberg 2000; Olsen 2012), saccades faster than %g deg/s over %g ms, fixations of at least %g ms.",
         options.rules.velocity_deg_s, options.rules.window_ms, options.rules.min_fixation_ms);
     struct json json = {out, false};
