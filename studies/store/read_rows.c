@@ -87,6 +87,7 @@ static bool session_row(sqlite3_stmt *s, const struct call *call)
     return call->session(call->user, &row);
 }
 
+#define THIS_SITTING SITTING("main")
 bool store_read_sessions(struct store_reader *reader, store_session_fn each, void *user)
 {
     static const char sql[] =
@@ -105,11 +106,9 @@ bool store_read_sessions(struct store_reader *reader, store_session_fn each, voi
         "   (value ->> '$.per') || iif(value ->> '$.margin' IS NULL, '', printf(' %.15g', value ->> "
         "'$.margin')),"
         "   char(10)) FROM json_each(s.settings, '$.planned')), ''),"
-        " coalesce(s.settings ->> '$.title', ''), " SITTING(
-            "main") ""
-                    " FROM session s JOIN participant p ON p.id = s.participant_id JOIN protocol o ON o.id = "
-                    "s.protocol_id"
-                    " ORDER BY s.id";
+        " coalesce(s.settings ->> '$.title', ''), " THIS_SITTING
+        " FROM session s JOIN participant p ON p.id = s.participant_id JOIN protocol o ON o.id = s.protocol_id"
+        " ORDER BY s.id";
     return read_rows(reader, sql, session_row, &(struct call){.user = user, .session = each});
 }
 
