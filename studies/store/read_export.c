@@ -152,8 +152,8 @@ static const char *const queries[] = {
     "FROM event AS c JOIN session AS s ON s.id = c.session_id JOIN participant AS p ON p.id = "
     "s.participant_id LEFT JOIN trial AS t ON t.id = c.trial_id LEFT JOIN verdict AS v ON v.session = s.id "
     "AND v.trial = coalesce(c.trial_id, 0) " AT_MOMENT "ORDER BY c.id",
-    "SELECT condition_id, reference_id AS reference_condition_id, scene, metric, value AS image_error FROM "
-    "measured_error ORDER BY condition_id, reference_id, scene, metric",
+    ("SELECT condition_id, reference_id AS reference_condition_id, scene, metric, value AS image_error FROM "
+     "measured_error ORDER BY condition_id, reference_id, scene, metric"),
 };
 
 const char *const *store_export_tables(void)
