@@ -29,7 +29,9 @@ static const struct column sample_columns[] = {
 static const struct column event_columns[] = {
     {"onset", "ns", "Time of the first sample, as timestamp in the recording. " CLOCK},
     {"duration", "s", "From the first sample to the last one."},
-    {"trial_type", NULL, "fixation or saccade."},
+    {"trial_type", NULL,
+     "fixation or saccade; of an interrupted trial only those of its last attempt. Between trials there are "
+     "some too."},
     {"x_coordinate", "deg", "A fixation's mean, a saccade's last sample, " HEAD "."},
     {"y_coordinate", "deg", "The same upwards."},
     {"amplitude", "deg", "Angle between a saccade's first and last sample; n/a for a fixation."},
@@ -105,8 +107,7 @@ static bool describe_events(struct bids *b, size_t run, size_t eye)
         return false;
     snprintf(
         text, sizeof text,
-        "Fixations and saccades of last attempts and between trials, found by fovstats " FOVSTUDY_VERSION
-        ", not by the tracker: I-VT (Salvucci & "
+        "Fixations and saccades found by fovstats " FOVSTUDY_VERSION ", not by the tracker: I-VT (Salvucci & "
         "Goldberg 2000; Olsen 2012), saccades faster than %g deg/s over %g ms, fixations of at least %g ms.",
         options.rules.velocity_deg_s, options.rules.window_ms, options.rules.min_fixation_ms);
     struct json json = {out, false};
