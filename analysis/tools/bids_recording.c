@@ -21,8 +21,7 @@ static const struct column sample_columns[] = {
     {"trial_id", NULL, "The trial the sample belongs to; n/a between trials."},
     {"attempt", NULL,
      "Attempt at the trial, from 1; an interrupted trial begins anew with the next. n/a: of no trial, from "
-     "before "
-     "its first attempt, or of an interrupted attempt that is not known."},
+     "before its first attempt, or of an interrupted attempt that is not known."},
     {NULL, NULL, NULL},
 };
 
