@@ -19,13 +19,18 @@ static const struct column sample_columns[] = {
     {"valid", NULL, "Whether the tracker had a direction: 1 yes, 0 no."},
     {"confidence", NULL, "The tracker's confidence, 0 to 1."},
     {"trial_id", NULL, "The trial the sample belongs to; n/a between trials."},
+    {"attempt", NULL,
+     "Attempt at the trial, from 1; an interrupted trial begins anew with the next. n/a: of no trial, from "
+     "before its first attempt, or of an interrupted attempt that is not known."},
     {NULL, NULL, NULL},
 };
 
 static const struct column event_columns[] = {
     {"onset", "ns", "Time of the first sample, as timestamp in the recording. " CLOCK},
     {"duration", "s", "From the first sample to the last one."},
-    {"trial_type", NULL, "fixation or saccade."},
+    {"trial_type", NULL,
+     "fixation or saccade; of an interrupted trial only those of its last attempt. Between trials there are "
+     "some too."},
     {"x_coordinate", "deg", "A fixation's mean, a saccade's last sample, " HEAD "."},
     {"y_coordinate", "deg", "The same upwards."},
     {"amplitude", "deg", "Angle between a saccade's first and last sample; n/a for a fixation."},

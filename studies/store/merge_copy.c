@@ -137,7 +137,7 @@ bool merge_copy(struct merging *m)
     bool ok = true;
     for (size_t i = 0; ok && maps[i]; i++)
         ok = merge_run(m, maps[i]);
-    ok = ok && add_people(m) && say_errors(m);
+    ok = ok && merge_attributes(m) && add_people(m) && say_errors(m);
     for (size_t i = 0; ok && tables[i]; i++)
         ok = merge_run(m, tables[i]);
     return ok;

@@ -47,6 +47,8 @@ struct store_session_row {
     // where the protocol has one; "" where none was planned, or an earlier version recorded the session.
     const char *planned;
     const char *title; // of the study; "" where an earlier version recorded the session
+    // The same for the same sitting, whatever file it stands in and under whatever laboratory's name.
+    const char *sitting;
 };
 
 // A member of a JSON object: a factor, a parameter, an attribute.
@@ -99,6 +101,7 @@ struct store_frame_row {
 struct store_exclusion_row {
     int64_t trial_id, session_id, participant_id; // two of them are 0
     const char *rule, *rule_set, *reason, *by;
+    bool ratings_only; // a choice in the same trial stays
 };
 
 // A trial of a staircase that was answered: what was shown and what came of it.

@@ -20,6 +20,9 @@ void store_reader_fail(struct store_reader *reader, const char *format, ...)
 bool store_reader_unchanged(struct store_reader *reader);
 void store_reader_fail_sqlite(struct store_reader *reader, int code);
 
+// Of an exclusion: it takes ratings out and leaves a choice alone (schema.sql).
+#define RATINGS_ONLY(exclusion) "substr(" exclusion ".rule, -12) = ':rating_pair'"
+
 // Of a frame: `effective` says what was not asked for. What a participant adjusts, pictures played back and
 // pictures repeated at the common rate are as asked.
 #define NOT_AS_ASKED(frame)                                                                                    \

@@ -2,6 +2,7 @@
 #include "studies/store/read.h"
 
 #include "studies/store/read_private.h"
+#include "studies/store/sitting.h"
 
 #include <math.h>
 #include <string.h>
@@ -81,10 +82,12 @@ static bool session_row(sqlite3_stmt *s, const struct call *call)
         .observer = text(s, 22),
         .planned = text(s, 23),
         .title = text(s, 24),
+        .sitting = text(s, 25),
     };
     return call->session(call->user, &row);
 }
 
+#define THIS_SITTING SITTING("main")
 bool store_read_sessions(struct store_reader *reader, store_session_fn each, void *user)
 {
     static const char sql[] =
@@ -103,7 +106,7 @@ bool store_read_sessions(struct store_reader *reader, store_session_fn each, voi
         "   (value ->> '$.per') || iif(value ->> '$.margin' IS NULL, '', printf(' %.15g', value ->> "
         "'$.margin')),"
         "   char(10)) FROM json_each(s.settings, '$.planned')), ''),"
-        " coalesce(s.settings ->> '$.title', '')"
+        " coalesce(s.settings ->> '$.title', ''), " THIS_SITTING
         " FROM session s JOIN participant p ON p.id = s.participant_id JOIN protocol o ON o.id = s.protocol_id"
         " ORDER BY s.id";
     return read_rows(reader, sql, session_row, &(struct call){.user = user, .session = each});
@@ -267,14 +270,16 @@ static bool exclusion_row(sqlite3_stmt *s, const struct call *call)
         .rule_set = text(s, 4),
         .reason = text(s, 5),
         .by = text(s, 6),
+        .ratings_only = sqlite3_column_int(s, 7),
     };
     return call->exclusion(call->user, &row);
 }
 
 bool store_read_exclusions(struct store_reader *reader, store_exclusion_fn each, void *user)
 {
-    static const char sql[] = "SELECT trial_id, session_id, participant_id, rule, rule_set, reason, \"by\""
-                              " FROM exclusion ORDER BY id";
+    static const char sql[] =
+        "SELECT trial_id, session_id, participant_id, rule, rule_set, reason, \"by\", " RATINGS_ONLY(
+            "exclusion") " FROM exclusion ORDER BY id";
     return read_rows(reader, sql, exclusion_row, &(struct call){.user = user, .exclusion = each});
 }
 

@@ -149,6 +149,7 @@ static void a_study_of_people(void **state)
         "answers to trials that are not done: 3",
         "Of 2 cells, 1 lies outside",
         "<h2>Definitions</h2>",
+        "left no count of frames (a crash, or it still runs). What was shown",
     };
     for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++)
         if (!strstr(page, parts[i]))
