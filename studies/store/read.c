@@ -177,6 +177,53 @@ struct store_reader *store_reader_open(const char *path, char *error, size_t err
     return NULL;
 }
 
+bool store_reader_rises(struct store_reader *reader, int64_t id, int64_t *last)
+{
+    if (id <= *last)
+        store_reader_fail_sqlite(reader, SQLITE_CORRUPT);
+    bool rises = id > *last;
+    *last = id;
+    return rises;
+}
+
+// SQLite finds a row by its index without comparing the two.
+static bool whole(struct store_reader *reader, const char *table)
+{
+    static const char sql[] =
+        "SELECT (SELECT count(*) FROM pragma_integrity_check(?1) WHERE integrity_check <> 'ok') + "
+        "(SELECT count(*) FROM pragma_foreign_key_check(?1))";
+    sqlite3_stmt *statement = NULL;
+    int64_t faults = 0;
+    int code = sqlite3_prepare_v2(reader->db, sql, -1, &statement, NULL);
+    if (code == SQLITE_OK)
+        code = sqlite3_bind_text(statement, 1, table, -1, SQLITE_STATIC);
+    if (code == SQLITE_OK)
+        code = sqlite3_step(statement);
+    if (code == SQLITE_ROW)
+        faults = sqlite3_column_int64(statement, 0);
+    else
+        store_reader_fail_sqlite(reader, code);
+    sqlite3_finalize(statement);
+    if (code == SQLITE_ROW && faults)
+        store_reader_fail(
+            reader,
+            "%s: the study file is damaged (table %s); use a backup, or try sqlite3's .recover on a copy",
+            reader->path, table);
+    return code == SQLITE_ROW && faults == 0;
+}
+
+bool store_reader_whole(struct store_reader *reader, bool logs)
+{
+    static const char *const tables[] = {
+        "protocol",       "participant", "session",    "segment",     "condition", "trial",
+        "choice",         "rating",      "response",   "adjust_step", "exposure",  "staircase_step",
+        "measured_error", "event",       "gaze_check", "exclusion",   NULL};
+    for (int i = 0; tables[i]; i++)
+        if (!whole(reader, tables[i]))
+            return false;
+    return !logs || (whole(reader, "gaze") && whole(reader, "frame"));
+}
+
 void store_reader_close(struct store_reader *reader)
 {
     if (!reader)

@@ -17,6 +17,7 @@ struct call {
     store_exclusion_fn exclusion;
     store_step_fn step;
     store_adjusted_fn adjusted;
+    int id; // the column of the id that rows are in the order of; 0: none
 };
 
 typedef bool (*row_fn)(sqlite3_stmt *statement, const struct call *call);
@@ -31,8 +32,10 @@ static bool read_rows(struct store_reader *reader, const char *sql, row_fn row, 
         return false;
     }
     bool going = true;
+    int64_t last = INT64_MIN;
     while (going && (code = sqlite3_step(statement)) == SQLITE_ROW)
-        going = row(statement, call);
+        going = (!call->id || store_reader_rises(reader, sqlite3_column_int64(statement, call->id), &last)) &&
+                row(statement, call);
     if (going && code != SQLITE_DONE) {
         store_reader_fail_sqlite(reader, code);
         going = false;
@@ -250,11 +253,12 @@ static bool frame_row(sqlite3_stmt *s, const struct call *call)
 
 bool store_read_frames(struct store_reader *reader, store_frame_fn each, void *user)
 {
-    static const char sql[] = "SELECT f.session_id, f.segment_id, f.trial_id, f.number, f.condition_id, "
-                              "f.phase, f.start_ns, f.cpu_us,"
-                              " f.gpu_us, f.late, f.gaze_age_us, f.shaded_px, g.clock = 'simulated', f.attempt"
-                              " FROM frame f JOIN segment g ON g.id = f.segment_id ORDER BY f.id";
-    return read_rows(reader, sql, frame_row, &(struct call){.user = user, .frame = each});
+    static const char sql[] =
+        "SELECT f.session_id, f.segment_id, f.trial_id, f.number, f.condition_id, "
+        "f.phase, f.start_ns, f.cpu_us,"
+        " f.gpu_us, f.late, f.gaze_age_us, f.shaded_px, g.clock = 'simulated', f.attempt, f.id"
+        " FROM frame f LEFT JOIN segment g ON g.id = f.segment_id ORDER BY f.id";
+    return read_rows(reader, sql, frame_row, &(struct call){.user = user, .frame = each, .id = 14});
 }
 
 static bool exclusion_row(sqlite3_stmt *s, const struct call *call)
