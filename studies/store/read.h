@@ -4,7 +4,8 @@
 // one after another, to a function of the caller; the row and its texts are borrowed until that function
 // returns. The function returns false to stop; the call then returns false with an empty store_reader_error().
 //
-// Numbers that are NULL in the file come as NaN (double) or as said below; texts that are NULL come as "".
+// Numbers that are NULL in the file come as NaN (double) or as said below, measurements also where they are not
+// finite; texts that are NULL come as "".
 // Times, units and angles are those of schema.sql. All rows come in an order that depends on nothing but the
 // data.
 //

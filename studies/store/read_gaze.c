@@ -49,9 +49,11 @@ static const char *text(sqlite3_stmt *s, int column)
     return value ? (const char *)value : "";
 }
 
+// A measurement that is no number is not known.
 static double real(sqlite3_stmt *s, int column)
 {
-    return sqlite3_column_type(s, column) == SQLITE_NULL ? (double)NAN : sqlite3_column_double(s, column);
+    double value = sqlite3_column_double(s, column);
+    return sqlite3_column_type(s, column) != SQLITE_NULL && isfinite(value) ? value : (double)NAN;
 }
 
 static bool sample_row(sqlite3_stmt *s, const struct call *call)

@@ -56,6 +56,13 @@ static double real(sqlite3_stmt *statement, int column)
                                                                  : sqlite3_column_double(statement, column);
 }
 
+// A measurement that is no number is not known.
+static double finite_real(sqlite3_stmt *statement, int column)
+{
+    double value = real(statement, column);
+    return isfinite(value) ? value : (double)NAN;
+}
+
 static bool session_row(sqlite3_stmt *s, const struct call *call)
 {
     struct store_session_row row = {
@@ -73,7 +80,7 @@ static bool session_row(sqlite3_stmt *s, const struct call *call)
         .device = text(s, 11),
         .driver = text(s, 12),
         .display = text(s, 13),
-        .refresh_hz = real(s, 14),
+        .refresh_hz = finite_real(s, 14),
         .width_px = real(s, 15),
         .height_px = real(s, 16),
         .fov_deg = real(s, 17),
@@ -119,7 +126,7 @@ static bool member_row(sqlite3_stmt *s, const struct call *call)
         .owner = sqlite3_column_int64(s, 0),
         .owner_text = text(s, 1),
         .key = text(s, 2),
-        .number = number ? sqlite3_column_double(s, 4) : (double)NAN,
+        .number = number ? finite_real(s, 4) : (double)NAN,
         .value = text(s, 3),
     };
     return call->member(call->user, &row);
@@ -239,11 +246,11 @@ static bool frame_row(sqlite3_stmt *s, const struct call *call)
         .condition_id = sqlite3_column_int64(s, 4),
         .phase = text(s, 5),
         .start_ns = sqlite3_column_int64(s, 6),
-        .cpu_us = real(s, 7),
-        .gpu_us = real(s, 8),
+        .cpu_us = finite_real(s, 7),
+        .gpu_us = finite_real(s, 8),
         .late = sqlite3_column_int(s, 9),
         .late_known = sqlite3_column_type(s, 9) != SQLITE_NULL,
-        .gaze_age_us = real(s, 10),
+        .gaze_age_us = finite_real(s, 10),
         .shaded_px = real(s, 11),
         .simulated_clock = sqlite3_column_int(s, 12),
         .attempt = sqlite3_column_int64(s, 13),
