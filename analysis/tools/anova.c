@@ -72,7 +72,7 @@ static int run(const struct command *command, int argc, char **argv)
         code = command_fail(command, EXIT_FAILED, "%s", error);
     } else {
         bool ok = true;
-        if (arguments.json)
+        if (r.factorials.count && arguments.json)
             print_json(&sample, &r);
         else if (r.factorials.count)
             ok = print_text(&sample, &r);
