@@ -143,14 +143,15 @@ static bool check_input(struct merging *m)
         "SELECT 1 FROM src.session AS s JOIN src.protocol AS o ON o.id = s.protocol_id JOIN main.protocol AS q "
         "USING "
         "(sha256) JOIN main.session AS m ON m.protocol_id = q.id AND m.seed <> s.seed LIMIT 1";
+    // As arguments: where they stand in a WHERE clause, SQLite checks main alone and finds no row of src.
     return merge_none(
                m,
                "SELECT trim(replace(replace(integrity_check, '*** in database src ***', ''), char(10), ' ')) "
-               "FROM pragma_integrity_check WHERE schema = 'src' AND integrity_check <> 'ok'",
+               "FROM pragma_integrity_check(NULL, 'src') WHERE integrity_check <> 'ok'",
                refuse_damage) &&
            merge_none(m,
                       "SELECT 'table ' || \"table\" || ' refers to rows that are not there' FROM "
-                      "pragma_foreign_key_check WHERE schema = 'src'",
+                      "pragma_foreign_key_check(NULL, 'src')",
                       refuse_damage) &&
            merge_none(m, kinds, refuse_kinds) &&
            (m->desc->new_protocol || merge_none(m, protocols, refuse_protocol)) &&
