@@ -70,7 +70,8 @@ static bool is_study(struct store_reader *reader)
     }
     if (version > STORE_VERSION) {
         store_reader_fail(reader,
-                          "%s: was written by a newer program (version %d of the file, this program knows %d)",
+                          "%s: was written by a newer program (version %d of the file, this program knows %d); "
+                          "use that program",
                           reader->path, version, STORE_VERSION);
         return false;
     }
