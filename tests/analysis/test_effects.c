@@ -4,6 +4,7 @@
 #include "analysis/stats/signflip_values.h"
 #include "program.h"
 #include "reference.h"
+#include "said.h"
 #include "study_file.h"
 
 #include <math.h>
@@ -94,15 +95,6 @@ static char *choices(void)
     return r.out;
 }
 
-static double member(const char *object, const char *key)
-{
-    char quoted[64];
-    snprintf(quoted, sizeof quoted, "\"%s\":", key);
-    const char *found = strstr(object, quoted);
-    assert_non_null(found);
-    return found[strlen(quoted)] == 'n' ? (double)NAN : strtod(found + strlen(quoted), NULL);
-}
-
 static void check_close(const char *study, const char *check, const char *key, double seen, double expected)
 {
     bool same = isnan(expected) ? isnan(seen) : fabs(seen - expected) <= 1e-9 * fmax(1, fabs(expected));
@@ -133,17 +125,17 @@ static void checks_agree_with_r(void **state)
         assert_non_null(object);
         bool switches = strcmp(fields[1], "toggles") == 0, half = strstr("side first last", fields[1]) != NULL;
         double scale = switches ? 1 : 100, offset = half ? 50 : 0;
-        check_close(last, fields[1], "people", member(object, "people"), reference_number(fields[2]));
-        check_close(last, fields[1], "estimate", member(object, "estimate"),
+        check_close(last, fields[1], "people", said_after(object, "", "people"), reference_number(fields[2]));
+        check_close(last, fields[1], "estimate", said_after(object, "", "estimate"),
                     offset + scale * reference_number(fields[3]));
-        check_close(last, fields[1], "low", member(object, "ci_low"),
+        check_close(last, fields[1], "low", said_after(object, "", "ci_low"),
                     offset + scale * reference_number(fields[4]));
-        check_close(last, fields[1], "high", member(object, "ci_high"),
+        check_close(last, fields[1], "high", said_after(object, "", "ci_high"),
                     offset + scale * reference_number(fields[5]));
-        check_close(last, fields[1], "d", member(object, "d"), reference_number(fields[6]));
+        check_close(last, fields[1], "d", said_after(object, "", "d"), reference_number(fields[6]));
         // 47 people and more are beyond the reference's list of all signs, not beyond ours
-        check_close(last, fields[1], "p", member(object, "p_value"), reference_number(fields[7]));
-        check_close(last, fields[1], "holm", member(object, "p_holm"), reference_number(fields[8]));
+        check_close(last, fields[1], "p", said_after(object, "", "p_value"), reference_number(fields[7]));
+        check_close(last, fields[1], "holm", said_after(object, "", "p_holm"), reference_number(fields[8]));
         compared++;
     }
     assert_int_equal(compared, 9 * 7);
@@ -252,7 +244,7 @@ static void frames_of_both_options_agree_with_r(void **state)
     const char *pairs = strstr(r.out, "\"pairs\":");
     FILE *file = reference_open("frames_pairs.csv");
     assert_non_null(pairs);
-    assert_true(member(pairs, "people") == 5 && member(pairs, "trials") == 11);
+    assert_true(said_after(pairs, "", "people") == 5 && said_after(pairs, "", "trials") == 11);
     assert_non_null(fgets(line, sizeof line, file));
     for (int i = 0; i < 3; i++) {
         char *rest = line;
@@ -265,7 +257,7 @@ static void frames_of_both_options_agree_with_r(void **state)
         assert_non_null(object);
         for (int k = 0; k < 3; k++) {
             double expected = reference_number(fields[k + 1]);
-            check_close("frames", fields[0], names[k], member(object, names[k]),
+            check_close("frames", fields[0], names[k], said_after(object, "", names[k]),
                         i == 1 ? exp(expected) : expected);
         }
     }
