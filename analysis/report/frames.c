@@ -1,7 +1,7 @@
 #include "analysis/report/frames.h"
 
+#include "analysis/report/frames_private.h"
 #include "analysis/report/level.h"
-
 #include "analysis/stats/quantile.h"
 
 #include <math.h>
@@ -11,6 +11,7 @@
 
 struct filling {
     struct frames *frames;
+    struct frames_pairing *pairing;
     struct sample *sample;
     size_t file;
     int64_t last_segment, last_number, last_start_ns;
@@ -64,16 +65,17 @@ static bool add_frame(void *user, const struct store_frame_row *row)
     f->last_start_ns = row->start_ns;
     group->frames++;
     group->late += row->late;
+    group->late_known += row->late_known;
     if (!isnan(row->shaded_px)) {
         group->shaded_px_sum += row->shaded_px;
         group->shaded_frames++;
     }
     f->frames->frames++;
     f->frames->late += row->late;
-    f->frames->late_unknown += !row->late_known;
+    f->frames->late_known += row->late_known;
     f->frames->simulated_clock = f->frames->simulated_clock || row->simulated_clock;
-    return add_time(&group->gpu, row->gpu_us / 1e3) && add_time(&group->cpu, row->cpu_us / 1e3) &&
-           add_time(&group->interval, interval);
+    return frames_pairing_frame(f->pairing, row) && add_time(&group->gpu, row->gpu_us / 1e3) &&
+           add_time(&group->cpu, row->cpu_us / 1e3) && add_time(&group->interval, interval);
 }
 
 static void finish_times(struct frame_times *times)
@@ -103,19 +105,15 @@ static int by_phase(const void *x, const void *y)
     return order ? order : (a->condition > b->condition) - (a->condition < b->condition);
 }
 
-bool frames_load(struct frames *out, struct sample *sample, char *error, size_t error_size)
+static bool read_file(struct filling *f)
 {
-    *out = (struct frames){0};
-    snprintf(error, error_size, "not enough memory");
-    for (size_t i = 0; i < sample->file_count; i++) {
-        struct filling f = {.frames = out, .sample = sample, .file = i, .session = SAMPLE_NONE};
-        if (store_read_frames(sample->files[i], add_frame, &f))
-            continue;
-        if (store_reader_error(sample->files[i])[0])
-            snprintf(error, error_size, "%s", store_reader_error(sample->files[i]));
-        frames_free(out);
-        return false;
-    }
+    bool ok =
+        frames_pairing_begin(f->pairing, f->file) && store_read_frames(f->sample->files[f->file], add_frame, f);
+    return frames_pairing_end(f->pairing) && ok;
+}
+
+static void finish(struct frames *out)
+{
     for (size_t i = 0; i < out->group_count; i++) {
         struct frame_group *g = &out->groups[i];
         finish_times(&g->gpu);
@@ -125,8 +123,30 @@ bool frames_load(struct frames *out, struct sample *sample, char *error, size_t 
     }
     if (out->group_count > 1)
         qsort(out->groups, out->group_count, sizeof out->groups[0], by_phase);
-    error[0] = '\0';
-    return true;
+}
+
+bool frames_load(struct frames *out, struct frames_pairs *pairs, struct sample *sample, double conf,
+                 char *error, size_t error_size)
+{
+    struct frames_pairing pairing = {.sample = sample};
+    bool ok = true;
+    *out = (struct frames){0};
+    *pairs = (struct frames_pairs){0};
+    snprintf(error, error_size, "not enough memory");
+    for (size_t i = 0; i < sample->file_count && ok; i++) {
+        ok = read_file(&(struct filling){
+            .frames = out, .pairing = &pairing, .sample = sample, .file = i, .session = SAMPLE_NONE});
+        if (!ok && store_reader_error(sample->files[i])[0])
+            snprintf(error, error_size, "%s", store_reader_error(sample->files[i]));
+    }
+    if (frames_pairing_finish(&pairing, pairs, conf) && ok) {
+        finish(out);
+        error[0] = '\0';
+        return true;
+    }
+    frames_free(out);
+    frames_pairs_free(pairs);
+    return false;
 }
 
 void frames_free(struct frames *frames)

@@ -6,7 +6,7 @@
 #ifndef ANALYSIS_REPORT_FRAMES_H
 #define ANALYSIS_REPORT_FRAMES_H
 
-#include "analysis/report/sample.h"
+#include "analysis/report/frames_pairs.h"
 
 struct frame_times {
     size_t count; // frames with a value
@@ -18,7 +18,7 @@ struct frame_group {
     size_t condition;  // SAMPLE_NONE: gray and text
     const char *label; // of the condition, "gray or text" for none
     const char *phase;
-    int64_t frames, late;
+    int64_t frames, late, late_known; // late_known: frames whose display told its refresh rate
     struct frame_times gpu, cpu, interval;
     double shaded_px_mean; // NaN where not known
     double shaded_px_sum;
@@ -28,12 +28,13 @@ struct frame_group {
 struct frames {
     size_t group_count;
     struct frame_group *groups; // stimulus first, then by label: words rising, numbers falling
-    int64_t frames, late;
-    int64_t late_unknown; // frames whose display told no refresh rate
+    int64_t frames, late, late_known;
     bool simulated_clock; // of any frame
 };
 
-bool frames_load(struct frames *out, struct sample *sample, char *error, size_t error_size);
+// One pass over the frames for both. Where it fails, both are empty.
+bool frames_load(struct frames *out, struct frames_pairs *pairs, struct sample *sample, double conf,
+                 char *error, size_t error_size);
 void frames_free(struct frames *frames);
 
 #endif

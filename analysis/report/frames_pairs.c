@@ -1,47 +1,13 @@
-#include "analysis/report/frames_pairs.h"
-
+#include "analysis/report/frames_private.h"
 #include "analysis/stats/quantile.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-// A trial that shows two options, and the frames of each while they arrive: 0 the test option's, 1 the
-// reference's.
-struct trial {
-    int64_t id, attempt, condition_id[2];
-    size_t person, test, reference;
-};
-
-struct times {
-    double *ms[2][FRAMES_MEASURES];
-    size_t count[2][FRAMES_MEASURES];
-    size_t frames[2], late[2];
-    bool late_known;
-};
-
-struct value {
-    size_t person, test, reference;
-    enum frames_measure measure;
-    double difference_ms, log_ratio, late;
-};
-
-struct filling {
-    struct sample *sample;
-    size_t file;
-    struct trial *trials; // by id
-    size_t trial_count;
-    const struct trial *trial; // whose frames arrive
-    struct times times;
-    struct value *values; // one per trial
-    size_t value_count;
-    bool simulated_clock;
-};
-
 static bool take_trial(void *user, const struct store_trial_row *row)
 {
-    struct filling *f = user;
+    struct frames_pairing *f = user;
     size_t session = sample_find_session(f->sample, f->file, row->session_id);
     if (session == SAMPLE_NONE || row->test_id == 0 || row->reference_id == 0 ||
         row->test_id == row->reference_id || strcmp(row->kind, "practice") == 0 ||
@@ -49,18 +15,19 @@ static bool take_trial(void *user, const struct store_trial_row *row)
         return true;
     if (!sample_grow(&f->trials, f->trial_count, sizeof f->trials[0]))
         return false;
-    f->trials[f->trial_count++] = (struct trial){row->id,
-                                                 row->attempt,
-                                                 {row->test_id, row->reference_id},
-                                                 f->sample->sessions[session].person,
-                                                 sample_find_condition(f->sample, f->file, row->test_id),
-                                                 sample_find_condition(f->sample, f->file, row->reference_id)};
+    f->trials[f->trial_count++] =
+        (struct frames_trial){row->id,
+                              row->attempt,
+                              {row->test_id, row->reference_id},
+                              f->sample->sessions[session].person,
+                              sample_find_condition(f->sample, f->file, row->test_id),
+                              sample_find_condition(f->sample, f->file, row->reference_id)};
     return true;
 }
 
 static int by_id(const void *x, const void *y)
 {
-    const struct trial *a = x, *b = y;
+    const struct frames_trial *a = x, *b = y;
     return (a->id > b->id) - (a->id < b->id);
 }
 
@@ -70,35 +37,34 @@ static double median(double *values, size_t count)
     return stat_quantile(values, count, 0.5);
 }
 
-static bool close_trial(struct filling *f)
+static bool close_trial(struct frames_pairing *f)
 {
-    struct times *t = &f->times;
+    struct frames_arriving *t = &f->times;
     bool ok = true;
     enum frames_measure m = t->count[0][FRAMES_GPU] && t->count[1][FRAMES_GPU] ? FRAMES_GPU : FRAMES_CPU;
     if (f->trial && t->count[0][m] && t->count[1][m]) {
         double test = median(t->ms[0][m], t->count[0][m]), reference = median(t->ms[1][m], t->count[1][m]);
         ok = sample_grow(&f->values, f->value_count, sizeof f->values[0]);
         if (ok)
-            f->values[f->value_count++] =
-                (struct value){.person = f->trial->person,
-                               .test = f->trial->test,
-                               .reference = f->trial->reference,
-                               .measure = m,
-                               .difference_ms = test - reference,
-                               .log_ratio = test > 0 && reference > 0 ? log(test / reference) : (double)NAN,
-                               .late = t->late_known ? (double)t->late[0] / (double)t->frames[0] -
-                                                           (double)t->late[1] / (double)t->frames[1]
-                                                     : (double)NAN};
+            f->values[f->value_count++] = (struct frames_value){
+                .person = f->trial->person,
+                .test = f->trial->test,
+                .reference = f->trial->reference,
+                .measure = m,
+                .values = {test - reference, test > 0 && reference > 0 ? log(test / reference) : (double)NAN,
+                           t->late_known ? (double)t->late[0] / (double)t->frames[0] -
+                                               (double)t->late[1] / (double)t->frames[1]
+                                         : (double)NAN}};
     }
     for (int i = 0; i < 2; i++)
         for (int k = 0; k < FRAMES_MEASURES; k++)
             free(t->ms[i][k]);
-    *t = (struct times){.late_known = true};
+    *t = (struct frames_arriving){.late_known = true};
     f->trial = NULL;
     return ok;
 }
 
-static bool add(struct times *t, int option, enum frames_measure measure, double ms)
+static bool add(struct frames_arriving *t, int option, enum frames_measure measure, double ms)
 {
     if (isnan(ms))
         return true;
@@ -108,13 +74,12 @@ static bool add(struct times *t, int option, enum frames_measure measure, double
     return true;
 }
 
-static bool take_frame(void *user, const struct store_frame_row *row)
+bool frames_pairing_frame(struct frames_pairing *f, const struct store_frame_row *row)
 {
-    struct filling *f = user;
     if (strcmp(row->phase, "stimulus") != 0 || row->condition_id == 0)
         return true;
     if (!f->trial || f->trial->id != row->trial_id) {
-        const struct trial key = {.id = row->trial_id};
+        const struct frames_trial key = {.id = row->trial_id};
         if (!close_trial(f))
             return false;
         f->trial = f->trial_count ? bsearch(&key, f->trials, f->trial_count, sizeof f->trials[0], by_id) : NULL;
@@ -135,7 +100,7 @@ static bool take_frame(void *user, const struct store_frame_row *row)
 
 static int by_pair(const void *x, const void *y)
 {
-    const struct value *a = x, *b = y;
+    const struct frames_value *a = x, *b = y;
     if (a->test != b->test)
         return a->test < b->test ? -1 : 1;
     if (a->reference != b->reference)
@@ -145,97 +110,85 @@ static int by_pair(const void *x, const void *y)
     return (a->person > b->person) - (a->person < b->person);
 }
 
-// The values of one pair, person after person, as one mean per person in `means` (three arrays of `count`).
-static size_t person_means(const struct value *values, size_t count, double *means)
+// One of the three values of a pair's trials, person after person; `means` has room for as many.
+static struct frames_mean mean_of(const struct frames_value *trials, size_t count, int which, double *means,
+                                  double conf)
 {
-    size_t people = 0;
-    for (size_t from = 0, to; from < count; from = to, people++) {
-        double sum[3] = {0, 0, 0};
-        for (to = from; to < count && values[to].person == values[from].person; to++) {
-            sum[0] += values[to].difference_ms;
-            sum[1] += values[to].log_ratio;
-            sum[2] += values[to].late;
+    struct frames_mean out = {0};
+    for (size_t from = 0, to; from < count; from = to) {
+        double sum = 0;
+        size_t known = 0;
+        for (to = from; to < count && trials[to].person == trials[from].person; to++) {
+            if (isnan(trials[to].values[which]))
+                continue;
+            sum += trials[to].values[which];
+            known++;
         }
-        for (size_t i = 0; i < 3; i++)
-            means[i * count + people] = sum[i] / (double)(to - from);
+        if (known)
+            means[out.people++] = sum / (double)known;
     }
-    return people;
+    for (size_t i = 0; i < out.people; i++)
+        out.mean += means[i] / (double)out.people;
+    if (out.people == 0)
+        out.mean = (double)NAN;
+    out.t = stat_ttest_one_sample(means, out.people, &(struct stat_ttest_options){.conf = conf});
+    return out;
 }
 
-static double mean(const double *values, size_t count)
+static bool add_pair(struct frames_pairs *out, const struct frames_value *trials, size_t count, double conf)
 {
-    double sum = 0;
-    for (size_t i = 0; i < count; i++)
-        sum += values[i];
-    return sum / (double)count;
-}
-
-static bool add_pair(struct frames_pairs *out, const struct value *values, size_t count, double conf)
-{
-    const struct stat_ttest_options options = {.conf = conf};
-    double *means = malloc(3 * count * sizeof *means);
-    if (!means || !sample_grow(&out->pairs, out->count, sizeof out->pairs[0])) {
-        free(means);
+    double *room = malloc(count * sizeof *room);
+    if (!room || !sample_grow(&out->pairs, out->count, sizeof out->pairs[0])) {
+        free(room);
         return false;
     }
-    size_t n = person_means(values, count, means);
-    out->pairs[out->count++] =
-        (struct frames_pair){.test = values[0].test,
-                             .reference = values[0].reference,
-                             .measure = values[0].measure,
-                             .trials = count,
-                             .people = n,
-                             .difference_ms = mean(means, n),
-                             .ratio = exp(mean(means + count, n)),
-                             .late = mean(means + 2 * count, n),
-                             .difference_t = stat_ttest_one_sample(means, n, &options),
-                             .log_ratio_t = stat_ttest_one_sample(means + count, n, &options),
-                             .late_t = stat_ttest_one_sample(means + 2 * count, n, &options)};
-    free(means);
+    struct frames_pair pair = {.test = trials[0].test,
+                               .reference = trials[0].reference,
+                               .measure = trials[0].measure,
+                               .trials = count,
+                               .difference_ms = mean_of(trials, count, 0, room, conf),
+                               .log_ratio = mean_of(trials, count, 1, room, conf),
+                               .late = mean_of(trials, count, 2, room, conf)};
+    pair.people = pair.difference_ms.people;
+    out->pairs[out->count++] = pair;
+    free(room);
     return true;
 }
 
-static bool read_file(struct filling *f)
+bool frames_pairing_begin(struct frames_pairing *f, size_t file)
 {
-    struct store_reader *reader = f->sample->files[f->file];
-    bool ok = store_read_trials(reader, take_trial, f);
-    if (ok && f->trial_count)
+    f->file = file;
+    f->times.late_known = true;
+    bool ok = store_read_trials(f->sample->files[file], take_trial, f);
+    if (f->trial_count)
         qsort(f->trials, f->trial_count, sizeof f->trials[0], by_id);
-    ok = ok && store_read_frames(reader, take_frame, f);
-    ok = close_trial(f) && ok;
+    return ok;
+}
+
+bool frames_pairing_end(struct frames_pairing *f)
+{
+    bool ok = close_trial(f);
     free(f->trials);
     f->trials = NULL;
     f->trial_count = 0;
     return ok;
 }
 
-bool frames_pairs_load(struct frames_pairs *out, struct sample *sample, double conf, char *error,
-                       size_t error_size)
+bool frames_pairing_finish(struct frames_pairing *f, struct frames_pairs *out, double conf)
 {
-    struct filling f = {.sample = sample, .times = {.late_known = true}};
     bool ok = true;
-    *out = (struct frames_pairs){0};
-    snprintf(error, error_size, "not enough memory");
-    for (; ok && f.file < sample->file_count; f.file++) {
-        ok = read_file(&f);
-        if (!ok && store_reader_error(sample->files[f.file])[0])
-            snprintf(error, error_size, "%s", store_reader_error(sample->files[f.file]));
-    }
-    if (f.value_count)
-        qsort(f.values, f.value_count, sizeof f.values[0], by_pair);
-    for (size_t from = 0, to; ok && from < f.value_count; from = to) {
-        for (to = from; to < f.value_count && f.values[to].test == f.values[from].test &&
-                        f.values[to].reference == f.values[from].reference &&
-                        f.values[to].measure == f.values[from].measure;)
+    if (f->value_count)
+        qsort(f->values, f->value_count, sizeof f->values[0], by_pair);
+    for (size_t from = 0, to; ok && from < f->value_count; from = to) {
+        for (to = from; to < f->value_count && f->values[to].test == f->values[from].test &&
+                        f->values[to].reference == f->values[from].reference &&
+                        f->values[to].measure == f->values[from].measure;)
             to++;
-        ok = add_pair(out, f.values + from, to - from, conf);
+        ok = add_pair(out, f->values + from, to - from, conf);
     }
-    free(f.values);
-    out->simulated_clock = f.simulated_clock;
-    if (ok)
-        error[0] = '\0';
-    else
-        frames_pairs_free(out);
+    free(f->values);
+    f->values = NULL;
+    out->simulated_clock = f->simulated_clock;
     return ok;
 }
 

@@ -51,10 +51,19 @@ static void who(const struct report *r, const struct gaze_record *record)
 
 static void quality_table(const struct report *r, const struct gaze_record *records, size_t count)
 {
-    static const char *const headings[] = {"<participant", "session",    "<eye",     "samples",     "Hz",
-                                           "not valid, %", "missing, %", "accuracy", "offset x, y", NULL};
-    static const char *const people[] = {"<participant", "<eye",     "samples",     "Hz", "not valid, %",
-                                         "missing, %",   "accuracy", "offset x, y", NULL};
+    static const char *const headings[] = {"<participant",
+                                           "session",
+                                           "<eye",
+                                           "samples",
+                                           "Hz",
+                                           "not valid, %",
+                                           "missing, %",
+                                           "accuracy, \u00b0",
+                                           "offset x, y, \u00b0",
+                                           NULL};
+    static const char *const people[] = {
+        "<participant",        "<eye", "samples", "Hz", "not valid, %", "missing, %", "accuracy, \u00b0",
+        "offset x, y, \u00b0", NULL};
     FILE *out = r->out;
     bool of_sessions = records == r->gaze.records;
     table_head(out, of_sessions ? "Gaze per session: data loss and accuracy" : "Gaze: data loss and accuracy",
@@ -79,10 +88,11 @@ static void quality_table(const struct report *r, const struct gaze_record *reco
 
 static void precision_table(const struct report *r, const struct gaze_record *records, size_t count)
 {
-    static const char *const headings[] = {"<participant",  "session", "<eye", "RMS-S2S h, v, both",
-                                           "SD h, v, both", "BCEA",    NULL};
-    static const char *const people[] = {"<participant",  "<eye", "RMS-S2S h, v, both",
-                                         "SD h, v, both", "BCEA", NULL};
+    static const char *const headings[] = {
+        "<participant",          "session",         "<eye", "RMS-S2S h, v, both, \u00b0",
+        "SD h, v, both, \u00b0", "BCEA, deg\u00b2", NULL};
+    static const char *const people[] = {
+        "<participant", "<eye", "RMS-S2S h, v, both, \u00b0", "SD h, v, both, \u00b0", "BCEA, deg\u00b2", NULL};
     FILE *out = r->out;
     bool of_sessions = records == r->gaze.records;
     table_head(out, of_sessions ? "Precision per session" : "Precision", of_sessions ? headings : people);
@@ -134,8 +144,8 @@ static void events_table(const struct report *r)
 
 static void sequence_table(const struct report *r)
 {
-    static const char *const headings[] = {"<participant", "<eye", "saccades", "V<sub>max</sub>, \u00b0/s",
-                                           "c, \u00b0",    "k",    "b",        NULL};
+    static const char *const headings[] = {
+        "<participant", "<eye", "saccades", "V<sub>max</sub>, \u00b0/s", "c, \u00b0", "k, \u00b0/s", "b", NULL};
     FILE *out = r->out;
     table_head(out, "Main sequence", headings);
     for (size_t i = 0; i < r->gaze.person_count; i++) {
@@ -161,8 +171,9 @@ static void sequence_table(const struct report *r)
 
 static void targets_table(const struct report *r)
 {
-    static const char *const headings[] = {"<participant", "<eye",    "<target",          "samples", "M (SD)",
-                                           "median",       "outside", "target not known", NULL};
+    static const char *const headings[] = {
+        "<participant",     "<eye", "<target", "samples", "M (SD)", "median", "samples outside",
+        "target not known", NULL};
     const struct gaze_over *over = &r->gaze_over;
     FILE *out = r->out;
     if (over->target_count == 0) {
@@ -247,8 +258,8 @@ static void limits(const struct report *r)
         worst = fmax(worst, g->checks[i].accuracy_deg);
     }
     if (g->check_count)
-        fprintf(out, "<p>Independent checks of the tracker: points %zu, not passed %zu.", g->check_count,
-                failed);
+        fprintf(out, "<p>Independent checks of the tracker at %zu point%s, %zu of them not passed.",
+                g->check_count, g->check_count == 1 ? "" : "s", failed);
     if (accuracy.n)
         fprintf(out, " Mean distance from the points: %.2f\u00b0, at worst %.2f\u00b0.", accuracy.mean, worst);
     fputs(g->check_count ? "</p>\n" : "", out);
@@ -283,12 +294,18 @@ static void methods(const struct report *r)
         "Accuracy: mean distance from a target at rest. RMS from sample to sample, SD and BCEA (square "
         "degrees, P = %g, Crossland & Rubin 2002) within fixations. Saccades are faster than %g\u00b0/s over "
         "%g ms (I-VT, Salvucci & Goldberg 2000; Olsen 2012), fixations last %g ms or more; gaps over %g ms "
-        "break them, and what touches one is cut: counted, not measured. Main sequence: V = Vmax (1 \u2212 "
-        "exp(\u2212A / c)) and V = k A^b. Distance to the target as Weier et al. 2016, section 4.2.2: samples "
-        "within "
-        "%g\u00b0 left and right and %g\u00b0 up and down. Age: from a sample\u2019s arrival to the start of "
-        "work on the frame, and to light.",
-        o->bcea_share, o->rules.velocity_deg_s, o->rules.window_ms, o->rules.min_fixation_ms, o->gap_ms,
+        "break them, and what touches one is cut: counted, not measured. ",
+        o->bcea_share, o->rules.velocity_deg_s, o->rules.window_ms, o->rules.min_fixation_ms, o->gap_ms);
+    fputs("Main sequence, of peak velocity V and amplitude A: V = V<sub>max</sub> (1 \u2212 e<sup>\u2212A / "
+          "c</sup>) and "
+          "V\u00a0=\u00a0k\u00a0A<sup>b</sup>. ",
+          out);
+    html_printf(
+        out,
+        "Distance to the target as Weier et al. 2016, section 4.2.2: samples within %g\u00b0 left and right "
+        "and "
+        "%g\u00b0 up and down. Age: from a sample\u2019s arrival to the start of work on the frame, and to "
+        "light.",
         o->region_x_deg, o->region_y_deg);
     fputs("</p>\n", out);
 }

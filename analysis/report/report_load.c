@@ -51,8 +51,8 @@ bool report_load_frames(struct report *r, char *error, size_t error_size)
     struct audit_task task = {.report = r};
     pthread_t thread;
     bool threaded = pthread_create(&thread, NULL, run_audit, &task) == 0;
-    bool ok = load_gaze(r, error, error_size) && frames_load(&r->frames, r->sample, error, error_size) &&
-              frames_pairs_load(&r->frames_pairs, r->sample, r->conf, error, error_size);
+    bool ok = load_gaze(r, error, error_size) &&
+              frames_load(&r->frames, &r->frames_pairs, r->sample, r->conf, error, error_size);
     if (threaded)
         pthread_join(thread, NULL);
     else

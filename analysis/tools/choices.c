@@ -41,9 +41,9 @@ static const char help[] =
     "a\n"
     "logistic mixed model; the binomial test of all answers stands below as the papers have it. Holm's p is\n"
     "adjusted for all cells with an answer.\n"
-    "Levels of a factor: between people Fisher's exact test of one answer each, else people are exchanged;\n"
-    "within people McNemar's test or Cochran's Q of one answer each, else the t-test of each person's "
-    "difference.\n"
+    "Levels of a factor, between or within people as their trials were planned: between people Fisher's\n"
+    "exact test of one answer each, else people are exchanged; within people McNemar's test or Cochran's Q\n"
+    "of one answer each, else the t-test of each person's difference. Who does not fit is left out and said.\n"
     "Last, effects on choices that are no preference: of side, order, place in the session, previous answer,\n"
     "switches and viewing time, by person, with Holm's p over these checks.\n";
 
