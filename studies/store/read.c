@@ -38,6 +38,13 @@ void store_reader_fail_sqlite(struct store_reader *reader, int code)
     case SQLITE_NOMEM:
         store_reader_fail(reader, "%s: not enough memory", path);
         return;
+    case SQLITE_READONLY: // nothing but undoing would write
+        store_reader_fail(
+            reader,
+            "%s: another program was stopped while it wrote, and %s-journal knows how to undo it; open "
+            "both with sqlite3 once",
+            path, path);
+        return;
     default:
         store_reader_fail(reader, "%s: cannot be read: %s", path,
                           reader->db ? sqlite3_errmsg(reader->db) : sqlite3_errstr(code));
@@ -91,14 +98,14 @@ static bool side_file(const struct store_reader *reader, const char *suffix)
     return found;
 }
 
-// Nobody writes where there is neither a write-ahead log nor an owner's lock. Such a file is opened as one that
-// does not change: SQLite then leaves no files of its own beside it, and a write-protected folder is no
-// hindrance. Should somebody begin to write after all, store_reader_unchanged() finds out. A path with letters
-// that mean something in a URI is opened the plain way.
+// Nobody writes where there is neither a write-ahead log, nor a journal of another program, nor an owner's
+// lock. Such a file is opened as one that does not change: SQLite then leaves no files of its own beside it,
+// and a write-protected folder is no hindrance. Should somebody begin to write after all,
+// store_reader_unchanged() finds out. A path with letters that mean something in a URI is opened the plain way.
 static bool at_rest(const struct store_reader *reader)
 {
-    return !side_file(reader, "-wal") && !side_file(reader, "-owner") && !strpbrk(reader->path, "?#%") &&
-           strncmp(reader->path, "//", 2) != 0;
+    return !side_file(reader, "-wal") && !side_file(reader, "-journal") && !side_file(reader, "-owner") &&
+           !strpbrk(reader->path, "?#%") && strncmp(reader->path, "//", 2) != 0;
 }
 
 // A reader belongs to one thread: without a mutex a sample is read in two thirds of the time.
