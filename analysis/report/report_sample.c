@@ -203,6 +203,7 @@ void report_methods(const struct report *r)
         fputs("d is Cohen\u2019s (d<sub>z</sub>: in the SD of the differences), with exact intervals by the "
               "noncentral t distribution. ",
               r->out);
+    report_planned_methods(r);
     html_printf(r->out,
                 "Intervals cover %g\u00a0%%. Where Holm is not named, p-values are not corrected for "
                 "the number of tests. ",

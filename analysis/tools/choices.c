@@ -29,7 +29,9 @@ static const char help[] =
     "  --conf C         confidence of intervals and null regions (0.95)\n"
     "  --margin M       tests whether the preference lies within P - M to P + M, by two one-sided tests; by "
     "default\n"
-    "                   the margin that the protocol planned, about one half\n"
+    "                   the margin that the protocol planned, about one half; equality is claimed by Holm's p "
+    "over\n"
+    "                   the cells\n"
     "  --simulated      analyse simulated sessions, which are left out otherwise\n"
     "  --protocol N     analyse the sessions of this protocol; else of the one with most sessions\n"
     "  --json           one object with the cells in an array\n"
@@ -189,7 +191,7 @@ static bool print_json(const struct sample *sample, const struct choices *c, con
     choices_factors_json(&json, &parts->factors);
     bool ok = choices_three_json(&json, c);
     if (!isnan(parts->margin))
-        choices_equivalence_json(&json, c, parts->margin);
+        ok = choices_equivalence_json(&json, c, parts->margin) && ok;
     choices_effects_json(&json, &parts->effects);
     json_integer(&json, "answers", c->answers);
     json_number(&json, "toggles_mean", c->toggles.mean);

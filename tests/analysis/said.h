@@ -4,6 +4,8 @@
 
 #include "program.h"
 
+#include <stddef.h>
+
 // The place after each of the marks in turn, up to NULL; fails the test where one is missing.
 const char *said_place(const char *text, const char *const *marks);
 #define SAID_PLACE(text, ...) said_place(text, (const char *const[]){__VA_ARGS__, NULL})
@@ -19,5 +21,12 @@ void said_sentence(struct program_result r, int code, const char *part);
 void said_done(struct program_result r, const char *part);
 // Two texts that are equal but for the last digits of numbers: sums go over sessions in a file's order.
 void said_same(const char *a, const char *b);
+
+// Arguments of fovstats, and a part of the sentence that they get.
+struct said_case {
+    const char *arguments[8];
+    const char *part;
+};
+void said_wrong_use(const struct said_case *cases, size_t count); // each: a sentence, and exit 2
 
 #endif

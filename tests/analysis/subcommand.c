@@ -31,6 +31,7 @@ static const struct {
     [AUDIT] = {{"frames", "--audit"}, true},
     [GAZE] = {{"gaze"}, true},
     [EVENTS] = {{"gaze", "--events"}, true},
+    [PLANNED] = {{"planned"}, true},
     [POWER] = {{"power", "--share", "0.7", "--participants", "5"}, true},
     [REPORT] = {{"report", "-o", "out.html"}, false},
     [MERGE] = {{"merge", "-o", "out.db"}, true},

@@ -18,6 +18,7 @@ enum subcommand {
     AUDIT, // frames --audit
     GAZE,
     EVENTS, // gaze --events
+    PLANNED,
     POWER,
     REPORT,
     MERGE,

@@ -106,7 +106,7 @@ static void confidence_of_none_or_all(void **state)
     static const char *const wrong[] = {"0", "1", "-1", "2", "1e-20", "0.99999999999999999"},
                              *const no_number[] = {"nan", "inf", "x", ""};
     static const enum subcommand with[] = {CHOICES, RATINGS, ANOVA, THRESHOLDS, JOD,
-                                           FRAMES,  AUDIT,   GAZE,  REPORT};
+                                           FRAMES,  AUDIT,   GAZE,  PLANNED,    REPORT};
     study_file_make("c.db", &(struct study_desc){0});
     for (size_t i = 0; i < countof(with); i++) {
         for (size_t k = 0; k < countof(wrong); k++)

@@ -29,6 +29,7 @@ static void sessions_without_a_trial(void **state)
                                                     [FRAMES] = "bare.db: no frame was recorded",
                                                     [GAZE] = "bare.db: no gaze sample was recorded",
                                                     [EVENTS] = "bare.db: no gaze sample was recorded",
+                                                    [PLANNED] = "bare.db: the protocol planned no analysis",
                                                     [POWER] = "bare.db: no choice was recorded"});
 }
 
@@ -36,10 +37,13 @@ static void sessions_without_a_trial(void **state)
 static void make_one_person(const char *path)
 {
     study_file_make(path, &(struct study_desc){0});
-    study_file_sql(path, "DELETE FROM choice WHERE trial_id NOT IN (SELECT id FROM trial WHERE session_id = 1);"
-                         "DELETE FROM rating WHERE trial_id NOT IN (SELECT id FROM trial WHERE session_id = 1);"
-                         "DELETE FROM trial WHERE session_id <> 1; DELETE FROM segment WHERE session_id <> 1;"
-                         "DELETE FROM session WHERE id <> 1; DELETE FROM participant WHERE id <> 1");
+    study_file_sql(
+        path, "DELETE FROM choice WHERE trial_id NOT IN (SELECT id FROM trial WHERE session_id = 1);"
+              "DELETE FROM rating WHERE trial_id NOT IN (SELECT id FROM trial WHERE session_id = 1);"
+              "DELETE FROM trial WHERE session_id <> 1; DELETE FROM segment WHERE session_id <> 1;"
+              "DELETE FROM session WHERE id <> 1; DELETE FROM participant WHERE id <> 1;"
+              "UPDATE session SET settings = json_set(settings, '$.planned', json('[{\"method\":\"binomial\","
+              "\"of\":\"choice\",\"per\":\"cell\"}]'))");
 }
 
 static void expect_null(const char *json, const char *after, const char *key)
@@ -104,8 +108,9 @@ static void two_protocols(void **state)
     study_file_sql("two.db", "INSERT INTO protocol VALUES(2, 'other', printf('%064d', 2), 'study: other');"
                              "UPDATE session SET protocol_id = 2 WHERE id > 15");
     subcommand_expect("two.db",
-                      (const char *const[SUBCOMMANDS]){
-                          [ANOVA] = "two.db: no ratings over factors", [THRESHOLDS] = "two.db: no staircase"});
+                      (const char *const[SUBCOMMANDS]){[ANOVA] = "two.db: no ratings over factors",
+                                                       [THRESHOLDS] = "two.db: no staircase",
+                                                       [PLANNED] = "two.db: the protocol planned no analysis"});
     static const enum subcommand tables[] = {CHOICES, RATINGS, JOD, FRAMES, AUDIT, GAZE};
     for (size_t i = 0; i < countof(tables); i++) {
         struct program_result r = subcommand_run(tables[i], "two.db", "--json", NULL);
