@@ -143,6 +143,10 @@ static bool open_files(struct sample *sample, const char *const *paths, size_t p
         if (!sample->files[i])
             return false;
         sample->file_count++;
+        if (!store_reader_whole(sample->files[i], false)) {
+            snprintf(error, error_size, "%s", store_reader_error(sample->files[i]));
+            return false;
+        }
     }
     return true;
 }

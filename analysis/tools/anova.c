@@ -69,7 +69,7 @@ static int analyse(const struct command *command, const struct study_arguments *
         code = command_fail(command, EXIT_FAILED, "%s", error);
     } else {
         bool ok = true;
-        if (arguments->json)
+        if (r.factorials.count && arguments->json)
             print_json(sample, &r);
         else if (r.factorials.count)
             ok = print_text(sample, &r);

@@ -113,8 +113,10 @@ static bool check(struct job *job, struct store_reader *reader)
 {
     const char *name = job->inputs[0].path;
     struct found found = {0};
-    if (!store_read_sessions(reader, look, &found))
-        return fail(job, name, store_reader_error(reader));
+    if (!store_reader_whole(reader, true) || !store_read_sessions(reader, look, &found)) {
+        snprintf(job->error, sizeof job->error, "%s", store_reader_error(reader));
+        return false;
+    }
     job->sessions = found.sessions;
     if (found.sessions == 0)
         return fail(job, name, "the study is empty: no session was recorded");

@@ -157,27 +157,29 @@ static int print(const struct command *command, const struct sample *sample, con
     return ok ? command_finish(command) : command_fail(command, EXIT_FAILED, "not enough memory");
 }
 
+#define NO_ROOM "there is no room for the events on the disk of temporary files; make some"
+
 static int analyse(const struct command *command, struct sample *sample, struct gaze_options *options,
                    bool events, bool json)
 {
     char error[SAMPLE_ERROR_SIZE];
     struct gaze_report gaze = {.record_count = 0};
     struct gaze_events list = {.sample = sample, .as_json = json};
-    int code;
+    int code = -1;
     if (events) {
         options->each = gaze_events_each;
         options->user = &list;
-        gaze_events_begin(&list);
+        if (!gaze_events_begin(&list))
+            return command_fail(command, EXIT_FAILED, NO_ROOM);
     }
-    bool loaded = gaze_load(&gaze, sample, options, error, sizeof error);
-    if (events)
-        gaze_events_end(&list);
-    if (!loaded)
+    if (!gaze_load(&gaze, sample, options, error, sizeof error))
         code = command_fail(command, EXIT_FAILED, "%s", error);
     else if (gaze.record_count + gaze.check_count + gaze.latency_count == 0)
         code = command_fail(command, EXIT_FAILED, "%s: no gaze sample was recorded in any session that counts",
                             store_reader_path(sample->files[0]));
-    else
+    if (events && !gaze_events_end(&list, code < 0) && code < 0)
+        code = command_fail(command, EXIT_FAILED, NO_ROOM);
+    if (code < 0)
         code = events ? command_finish(command) : print(command, sample, &gaze, json);
     gaze_free(&gaze);
     return code;

@@ -52,7 +52,10 @@ static bool print_ranks(const struct sample *sample, const struct rating_questio
         table_cell(&t, "%zu", g->rank.n);
         ratings_p(&t, g->rank.p_value);
         ratings_number(&t, "%.2f", g->rank.estimate);
-        ratings_interval(&t, g->rank.ci_low, g->rank.ci_high);
+        if (isfinite(g->rank.ci_low) && isfinite(g->rank.ci_high))
+            ratings_interval(&t, g->rank.ci_low, g->rank.ci_high);
+        else
+            table_cell(&t, "n too small");
         ratings_number(&t, "%.2f", g->effect.d);
         ratings_interval(&t, g->effect.ci_low, g->effect.ci_high);
         ratings_number(&t, "%.2f", g->effect.g);

@@ -4,7 +4,8 @@
 // one after another, to a function of the caller; the row and its texts are borrowed until that function
 // returns. The function returns false to stop; the call then returns false with an empty store_reader_error().
 //
-// Numbers that are NULL in the file come as NaN (double) or as said below; texts that are NULL come as "".
+// Numbers that are NULL in the file come as NaN (double) or as said below, measurements also where they are not
+// finite; texts that are NULL come as "".
 // Times, units and angles are those of schema.sql. All rows come in an order that depends on nothing but the
 // data.
 //
@@ -22,6 +23,10 @@ struct store_reader;
 // NULL with a sentence naming the file in `error` where it is missing, a folder, not SQLite, another program's,
 // of another schema version than this program's, or damaged.
 struct store_reader *store_reader_open(const char *path, char *error, size_t error_size);
+// False with a sentence where a table or an index is damaged, or a row refers to one that is not there: queries
+// would then pass over rows without a word. Gaze samples and frames, which are many, only where `logs` asks for
+// them.
+bool store_reader_whole(struct store_reader *reader, bool logs);
 void store_reader_close(struct store_reader *reader); // NULL is fine
 const char *store_reader_path(const struct store_reader *reader);
 // A sentence naming the file after a call that returned false; "" where the caller's function stopped it.

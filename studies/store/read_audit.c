@@ -13,6 +13,7 @@ struct call {
     store_moment_fn moment;
     store_audit_frame_fn frame;
     store_exposure_fn exposure;
+    int id; // the column of the id that rows are in the order of; 0: none
 };
 
 static bool read_all(struct store_reader *reader, const char *sql,
@@ -22,8 +23,10 @@ static bool read_all(struct store_reader *reader, const char *sql,
     reader->error[0] = '\0';
     int code = sqlite3_prepare_v2(reader->db, sql, -1, &statement, NULL);
     bool going = code == SQLITE_OK;
+    int64_t last = INT64_MIN;
     while (going && (code = sqlite3_step(statement)) == SQLITE_ROW)
-        going = row(statement, call);
+        going = (!call->id || store_reader_rises(reader, sqlite3_column_int64(statement, call->id), &last)) &&
+                row(statement, call);
     if (code != SQLITE_DONE && code != SQLITE_ROW) {
         store_reader_fail_sqlite(reader, code);
         going = false;
@@ -164,11 +167,11 @@ bool store_read_audit_frames(struct store_reader *reader, store_audit_frame_fn e
         " f.gaze_id, f.gaze_age_us, coalesce(m.valid = 0, 0) OR coalesce(n.valid = 0, 0),"
         " coalesce(m.valid = 1 AND m.eye <> 'both' AND g.eye <> 'both' AND m.eye <> g.eye, 0), f.fovea,"
         " " NOT_AS_ASKED(
-            "f.") " FROM frame f LEFT JOIN condition c ON c.id = f.condition_id"
+            "f.") ", f.id FROM frame f LEFT JOIN condition c ON c.id = f.condition_id"
                   " LEFT JOIN gaze g ON g.id = f.gaze_id"
                   " LEFT JOIN gaze m ON m.id = f.gaze_id + 1 AND m.segment_id = f.segment_id"
                   " LEFT JOIN gaze n ON n.id = f.gaze_id + 2 AND n.segment_id = f.segment_id ORDER BY f.id";
-    return read_all(reader, sql, frame_row, &(struct call){.user = user, .frame = each});
+    return read_all(reader, sql, frame_row, &(struct call){.user = user, .frame = each, .id = 19});
 }
 
 static bool exposure_row(sqlite3_stmt *s, const struct call *call)

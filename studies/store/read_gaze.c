@@ -12,6 +12,7 @@ struct call {
     store_target_fn target;
     store_gaze_use_fn use;
     store_gaze_check_fn check;
+    int id; // the column of the id that rows are in the order of; 0: none
 };
 
 static bool read_all(struct store_reader *reader, const char *sql, int64_t bound,
@@ -23,8 +24,10 @@ static bool read_all(struct store_reader *reader, const char *sql, int64_t bound
     bool going = code == SQLITE_OK;
     if (going && bound)
         sqlite3_bind_int64(statement, 1, bound);
+    int64_t last = INT64_MIN;
     while (going && (code = sqlite3_step(statement)) == SQLITE_ROW)
-        going = row(statement, call);
+        going = (!call->id || store_reader_rises(reader, sqlite3_column_int64(statement, call->id), &last)) &&
+                row(statement, call);
     if (code != SQLITE_DONE && code != SQLITE_ROW) {
         store_reader_fail_sqlite(reader, code);
         going = false;
@@ -46,9 +49,11 @@ static const char *text(sqlite3_stmt *s, int column)
     return value ? (const char *)value : "";
 }
 
+// A measurement that is no number is not known.
 static double real(sqlite3_stmt *s, int column)
 {
-    return sqlite3_column_type(s, column) == SQLITE_NULL ? (double)NAN : sqlite3_column_double(s, column);
+    double value = sqlite3_column_double(s, column);
+    return sqlite3_column_type(s, column) != SQLITE_NULL && isfinite(value) ? value : (double)NAN;
 }
 
 static bool sample_row(sqlite3_stmt *s, const struct call *call)
@@ -68,8 +73,8 @@ static bool sample_row(sqlite3_stmt *s, const struct call *call)
 bool store_read_gaze(struct store_reader *reader, store_gaze_sample_fn each, void *user)
 {
     static const char sql[] = "SELECT session_id, segment_id, trial_id, device_ns, host_ns, eye, x_deg, y_deg,"
-                              " valid FROM gaze ORDER BY id";
-    return read_all(reader, sql, 0, sample_row, &(struct call){.user = user, .sample = each}) &&
+                              " valid, id FROM gaze ORDER BY id";
+    return read_all(reader, sql, 0, sample_row, &(struct call){.user = user, .sample = each, .id = 9}) &&
            store_reader_unchanged(reader);
 }
 
@@ -119,6 +124,8 @@ bool store_read_targets(struct store_reader *reader, int64_t trial_id, store_tar
 
 static bool use_row(sqlite3_stmt *s, const struct call *call)
 {
+    if (!sqlite3_column_int(s, 5))
+        return true;
     struct store_gaze_use row = {.session_id = sqlite3_column_int64(s, 0),
                                  .age_ms = real(s, 1) / 1e3,
                                  .to_light_ms = real(s, 2) / 1e6,
@@ -130,10 +137,9 @@ static bool use_row(sqlite3_stmt *s, const struct call *call)
 bool store_read_gaze_uses(struct store_reader *reader, store_gaze_use_fn each, void *user)
 {
     static const char sql[] =
-        "SELECT session_id, gaze_age_us, present_ns - start_ns, present_estimated,"
-        " fovea_source = 'lost' FROM frame WHERE phase = 'stimulus' AND fovea_source IN ('gaze', 'lost')"
-        " ORDER BY id";
-    return read_all(reader, sql, 0, use_row, &(struct call){.user = user, .use = each}) &&
+        "SELECT session_id, gaze_age_us, present_ns - start_ns, present_estimated, fovea_source = 'lost',"
+        " phase = 'stimulus' AND fovea_source IN ('gaze', 'lost'), id FROM frame ORDER BY id";
+    return read_all(reader, sql, 0, use_row, &(struct call){.user = user, .use = each, .id = 6}) &&
            store_reader_unchanged(reader);
 }
 

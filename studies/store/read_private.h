@@ -4,6 +4,7 @@
 
 #include <sqlite3.h>
 #include <stdbool.h>
+#include <stdint.h>
 #include <sys/stat.h>
 
 struct store_reader {
@@ -19,6 +20,9 @@ void store_reader_fail(struct store_reader *reader, const char *format, ...)
 // False with a sentence where the file is no longer the one that was opened.
 bool store_reader_unchanged(struct store_reader *reader);
 void store_reader_fail_sqlite(struct store_reader *reader, int code);
+// Of a scan in the order of ids, from *last INT64_MIN on: false with a sentence where an id does not rise,
+// which is a page that was overwritten. SQLite hands such rows out.
+bool store_reader_rises(struct store_reader *reader, int64_t id, int64_t *last);
 
 // Of an exclusion: it takes ratings out and leaves a choice alone (schema.sql).
 #define RATINGS_ONLY(exclusion) "substr(" exclusion ".rule, -12) = ':rating_pair'"

@@ -18,6 +18,7 @@ struct call {
     store_exclusion_fn exclusion;
     store_step_fn step;
     store_adjusted_fn adjusted;
+    int id; // the column of the id that rows are in the order of; 0: none
 };
 
 typedef bool (*row_fn)(sqlite3_stmt *statement, const struct call *call);
@@ -32,8 +33,10 @@ static bool read_rows(struct store_reader *reader, const char *sql, row_fn row, 
         return false;
     }
     bool going = true;
+    int64_t last = INT64_MIN;
     while (going && (code = sqlite3_step(statement)) == SQLITE_ROW)
-        going = row(statement, call);
+        going = (!call->id || store_reader_rises(reader, sqlite3_column_int64(statement, call->id), &last)) &&
+                row(statement, call);
     if (going && code != SQLITE_DONE) {
         store_reader_fail_sqlite(reader, code);
         going = false;
@@ -54,6 +57,13 @@ static double real(sqlite3_stmt *statement, int column)
                                                                  : sqlite3_column_double(statement, column);
 }
 
+// A measurement that is no number is not known.
+static double finite_real(sqlite3_stmt *statement, int column)
+{
+    double value = real(statement, column);
+    return isfinite(value) ? value : (double)NAN;
+}
+
 static bool session_row(sqlite3_stmt *s, const struct call *call)
 {
     struct store_session_row row = {
@@ -71,7 +81,7 @@ static bool session_row(sqlite3_stmt *s, const struct call *call)
         .device = text(s, 11),
         .driver = text(s, 12),
         .display = text(s, 13),
-        .refresh_hz = real(s, 14),
+        .refresh_hz = finite_real(s, 14),
         .width_px = real(s, 15),
         .height_px = real(s, 16),
         .fov_deg = real(s, 17),
@@ -119,7 +129,7 @@ static bool member_row(sqlite3_stmt *s, const struct call *call)
         .owner = sqlite3_column_int64(s, 0),
         .owner_text = text(s, 1),
         .key = text(s, 2),
-        .number = number ? sqlite3_column_double(s, 4) : (double)NAN,
+        .number = number ? finite_real(s, 4) : (double)NAN,
         .value = text(s, 3),
     };
     return call->member(call->user, &row);
@@ -239,11 +249,11 @@ static bool frame_row(sqlite3_stmt *s, const struct call *call)
         .condition_id = sqlite3_column_int64(s, 4),
         .phase = text(s, 5),
         .start_ns = sqlite3_column_int64(s, 6),
-        .cpu_us = real(s, 7),
-        .gpu_us = real(s, 8),
+        .cpu_us = finite_real(s, 7),
+        .gpu_us = finite_real(s, 8),
         .late = sqlite3_column_int(s, 9),
         .late_known = sqlite3_column_type(s, 9) != SQLITE_NULL,
-        .gaze_age_us = real(s, 10),
+        .gaze_age_us = finite_real(s, 10),
         .shaded_px = real(s, 11),
         .simulated_clock = sqlite3_column_int(s, 12),
         .attempt = sqlite3_column_int64(s, 13),
@@ -253,11 +263,12 @@ static bool frame_row(sqlite3_stmt *s, const struct call *call)
 
 bool store_read_frames(struct store_reader *reader, store_frame_fn each, void *user)
 {
-    static const char sql[] = "SELECT f.session_id, f.segment_id, f.trial_id, f.number, f.condition_id, "
-                              "f.phase, f.start_ns, f.cpu_us,"
-                              " f.gpu_us, f.late, f.gaze_age_us, f.shaded_px, g.clock = 'simulated', f.attempt"
-                              " FROM frame f JOIN segment g ON g.id = f.segment_id ORDER BY f.id";
-    return read_rows(reader, sql, frame_row, &(struct call){.user = user, .frame = each});
+    static const char sql[] =
+        "SELECT f.session_id, f.segment_id, f.trial_id, f.number, f.condition_id, "
+        "f.phase, f.start_ns, f.cpu_us,"
+        " f.gpu_us, f.late, f.gaze_age_us, f.shaded_px, g.clock = 'simulated', f.attempt, f.id"
+        " FROM frame f LEFT JOIN segment g ON g.id = f.segment_id ORDER BY f.id";
+    return read_rows(reader, sql, frame_row, &(struct call){.user = user, .frame = each, .id = 14});
 }
 
 static bool exclusion_row(sqlite3_stmt *s, const struct call *call)
