@@ -1,8 +1,8 @@
 # How far the peak velocity of saccades, and a main sequence fitted to it, are off at a tracker's rate: writes
 # saccade_rate.csv beside itself. Base R only.
 # Each line: vmax and c of the simulated people, profile, noise (degrees, SD), rate in Hz, window of the peak in ms, the
-# time that a peak's velocity is taken over in ms, then found / true of vmax, c, and b (of V = k A^b, against the same fit to
-# the true peaks), saccades found.
+# time that a peak's velocity is taken over in ms, then found / true of vmax, c, and of k and b (of V = k A^b, against the
+# same fit to the true peaks), saccades found.
 # 600 saccades of 1 to 18 degrees per line, their phase against the samples random; velocity profiles a raised cosine and a
 # minimum jerk. Found as I-VT does: faster than 30 deg/s over 20 ms, for at least 10 ms; vmax and c by least squares.
 out <- file(file.path(dirname(sub("--file=", "", grep("--file=", commandArgs(FALSE), value = TRUE))), "saccade_rate.csv"), "w")
@@ -31,7 +31,7 @@ exponential <- function(a, v) {
   c <- exp(optimize(function(l) sum((v - vmax(exp(l)) * (1 - exp(-a / exp(l))))^2), log(c(0.5, 100)), tol = 1e-9)$minimum)
   c(vmax(c), c)
 }
-slope <- function(a, v) coef(lm(log(v) ~ log(a)))[[2]]
+power <- function(a, v) { p <- coef(lm(log(v) ~ log(a))); c(exp(p[[1]]), p[[2]]) }
 
 cases <- list(c(60, 10), c(75, 10), c(90, 10), c(100, 10), c(120, 10), c(200, 10), c(250, 10), c(500, 10), c(1000, 10),
               c(250, 20), c(1000, 20), c(180, 10))
@@ -40,7 +40,7 @@ for (name in names(profiles)) for (truth in list(c(400, 4), c(500, 6), c(650, 8)
   s <- sapply(a, saccade, truth, profiles[[name]], case[1], case[2], noise)
   ok <- !is.na(s[1, ])
   ratio <- c(exponential(s[1, ok], s[2, ok]) / truth,
-             slope(s[1, ok], s[2, ok]) / slope(a[ok], truth[1] * (1 - exp(-a[ok] / truth[2]))))
+             power(s[1, ok], s[2, ok]) / power(a[ok], truth[1] * (1 - exp(-a[ok] / truth[2]))))
   writeLines(paste(c(truth, name, noise, case, sprintf("%.6g", 2000 * steps(case[2], case[1]) / case[1]),
                      sprintf("%.4f", ratio), sum(ok)), collapse = ","), out)
 }
