@@ -9,7 +9,7 @@ struct gaze_rules gaze_rules(enum gaze_method method)
     return (struct gaze_rules){.method = method,
                                .velocity_deg_s = 30,
                                .window_ms = 20,
-                               .peak_ms = 10,
+                               .peak_ms = 8,
                                .dispersion_deg = 1,
                                .min_fixation_ms = method == GAZE_IVT ? 60 : 100,
                                .min_saccade_ms = 10,

@@ -37,9 +37,10 @@ struct gaze_rules {
 
 // velocity 30 deg/s, window 20 ms, fixations of at least 60 ms, merged within 75 ms and 0.5 deg: Olsen 2012.
 // Saccades of at least 10 ms: shorter ones would be smaller than microsaccades by 21 ms + 2.2 ms/deg
-// (Carpenter 1988), so they are noise. Peaks over 10 ms: the 20 ms that find a saccade flatten its peak; a main
-// sequence fitted to such peaks has its c a third to two thirds too large (tests/reference/saccade_rate.R).
-// I-DT: 1 deg and 100 ms, the upper and lower end of Salvucci & Goldberg's 0.5 to 1 deg and 100 to 200 ms.
+// (Carpenter 1988), so they are noise. Peaks over 8 ms, the neighbours at 250 Hz: the 20 ms that find a saccade
+// flatten its peak, so that c of a main sequence comes out up to twice too large
+// (tests/reference/saccade_rate.R). I-DT: 1 deg and 100 ms, the upper and lower end of Salvucci & Goldberg's
+// 0.5 to 1 deg and 100 to 200 ms.
 struct gaze_rules gaze_rules(enum gaze_method method);
 
 struct gaze_event {
@@ -67,10 +68,10 @@ void gaze_velocities(const struct gaze_point *points, size_t count, double windo
 double gaze_velocity_span_ms(double interval_ms, double window_ms);
 
 // Up to which span peaks tell a main sequence: of simulated saccades (tests/reference/saccade_rate.R; Vmax 400
-// to 650 deg/s, c 4 to 8 degrees, noise of 0.03 and 0.1 degrees) Vmax comes out at most 13 % wrong, and c, k
-// and b of the fits at most 17 %. At 75 Hz Vmax is up to 22 % and at 60 Hz up to 47 % too large, and c two to
-// three times.
-#define GAZE_VMAX_SPAN_MS 23.0  // the neighbours of samples at 87 Hz
-#define GAZE_SHAPE_SPAN_MS 12.0 // c, k and b; the neighbours at 167 Hz
+// to 700 deg/s, c 4 to 7 degrees, noise of 0.03 and 0.1 degrees) Vmax comes out at most 10 % wrong, and c, k
+// and b of the fits at most 16 %. At 90 Hz Vmax is up to 21 % and at 60 Hz up to 57 % too large, and c two to
+// four times.
+#define GAZE_VMAX_SPAN_MS 17.5 // the neighbours of samples at 114 Hz
+#define GAZE_SHAPE_SPAN_MS 8.5 // c, k and b; the neighbours at 235 Hz
 
 #endif

@@ -75,8 +75,9 @@ void gaze_sequence_words(const struct gaze_report *report, char out[GAZE_WORDS_S
     snprintf(
         out, GAZE_WORDS_SIZE,
         "A peak is the velocity between the samples at most %g ms before and after the fastest one, at "
-        "least its neighbours%s. Of simulated saccades, Vmax was right to 13 %% where that time was at most "
-        "%g ms, and c, k and b to 17 %% where it was at most %g ms, which the intervals do not contain; over "
-        "longer times they are not estimable.",
+        "least its neighbours%s. Of simulated saccades (Vmax 400 to 700 deg/s, c 4 to 7 deg, noise up to 0.1 "
+        "deg) Vmax was right to 10 %% where that time was at most %g ms, and c, k and b to 16 %% where it was "
+        "at "
+        "most %g ms; the intervals do not contain this. Over longer times they are not estimable.",
         report->options.rules.peak_ms / 2, at, GAZE_VMAX_SPAN_MS, GAZE_SHAPE_SPAN_MS);
 }

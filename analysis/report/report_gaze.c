@@ -189,9 +189,9 @@ static void targets_table(const struct report *r)
     if (flat)
         fprintf(
             out,
-            "<p class=\"note\">Samples of one eye on a target whose distance the file does not tell, written "
-            "by an older version: %" PRId64 ". Where that eye saw it is not known: accuracy and distance are "
-            "not estimable by them.</p>\n",
+            "<p class=\"note\">Samples of one eye that cannot be compared with the target, since the file (of "
+            "an older version) does not tell how far away it was: %" PRId64
+            ". Accuracy and distance are not estimable by them.</p>\n",
             flat);
     if (over->target_count == 0)
         return;

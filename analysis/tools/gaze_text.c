@@ -184,9 +184,9 @@ static bool print_targets(const struct sample *sample, const struct gaze_report 
         puts("No trial that counts had a fixation target: accuracy and distance to it are not estimable.\n");
     if (flat)
         printf(
-            "Samples of one eye on a target whose distance the file does not tell (it was written by an older\n"
-            "version): %" PRId64 ". Where that eye saw it is not known: accuracy and distance are not "
-            "estimable by them.\n\n",
+            "Samples of one eye that cannot be compared with the target, since the file (of an older version)\n"
+            "does not tell how far away it was: %" PRId64
+            ". Accuracy and distance are not estimable by them.\n\n",
             flat);
     if (over->target_count == 0)
         return true;

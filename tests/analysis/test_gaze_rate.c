@@ -153,14 +153,14 @@ static void limits_of_the_main_sequence(void **state)
         double span = gaze_velocity_span_ms(1000 / v[4], v[5]), vmax = fabs(v[7] - 1);
         double shape = fmax(fabs(v[8] - 1), fmax(fabs(v[9] - 1), fabs(v[10] - 1)));
         assert_true(reference_close(span, v[6], 1e-5));
-        assert_true(span > GAZE_VMAX_SPAN_MS || vmax <= 0.13);
-        assert_true(span > GAZE_SHAPE_SPAN_MS || shape <= 0.17);
+        assert_true(span > GAZE_VMAX_SPAN_MS || vmax <= 0.1);
+        assert_true(span > GAZE_SHAPE_SPAN_MS || shape <= 0.16);
         beyond_vmax = span > GAZE_VMAX_SPAN_MS ? fmax(beyond_vmax, vmax) : beyond_vmax;
         beyond_c = span > GAZE_SHAPE_SPAN_MS ? fmax(beyond_c, fabs(v[8] - 1)) : beyond_c;
         rows++;
     }
     fclose(file);
-    assert_int_equal(rows, 144);
+    assert_int_equal(rows, 208);
     assert_true(beyond_vmax > 0.4 && beyond_c > 2);
     assert_true(isnan(gaze_velocity_span_ms((double)NAN, 10)) && isnan(gaze_velocity_span_ms(0, 10)));
 }

@@ -120,7 +120,7 @@ walk <- function(n, hz, noise) {
   }
   list(t = t, x = x + rnorm(n, 0, noise), y = y + rnorm(n, 0, noise))
 }
-usual <- c(30, 20, 60, 10, 75, 0.5, 10)
+usual <- c(30, 20, 60, 10, 75, 0.5, 8)
 for (i in 1:12) {
   hz <- c(60, 120, 250, 500)[(i - 1) %% 4 + 1]
   w <- walk(250, hz, c(0.01, 0.1, 0.4)[(i - 1) %/% 4 + 1])

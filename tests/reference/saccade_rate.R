@@ -33,9 +33,9 @@ exponential <- function(a, v) {
 }
 power <- function(a, v) { p <- coef(lm(log(v) ~ log(a))); c(exp(p[[1]]), p[[2]]) }
 
-cases <- list(c(60, 10), c(75, 10), c(90, 10), c(100, 10), c(120, 10), c(200, 10), c(250, 10), c(500, 10), c(1000, 10),
-              c(250, 20), c(1000, 20), c(180, 10))
-for (name in names(profiles)) for (truth in list(c(400, 4), c(500, 6), c(650, 8))) for (noise in c(0.03, 0.1)) for (case in cases) {
+cases <- list(c(60, 8), c(75, 8), c(90, 8), c(100, 8), c(115, 8), c(120, 8), c(200, 8), c(236, 8), c(250, 8), c(500, 8), c(1000, 8),
+              c(250, 20), c(1000, 20))
+for (name in names(profiles)) for (truth in list(c(400, 4), c(500, 6), c(600, 6), c(700, 7))) for (noise in c(0.03, 0.1)) for (case in cases) {
   a <- runif(600, 1, 18)
   s <- sapply(a, saccade, truth, profiles[[name]], case[1], case[2], noise)
   ok <- !is.na(s[1, ])
