@@ -128,6 +128,63 @@ static void without_depth_an_eye_has_no_accuracy(void **state)
     program_free(&r);
 }
 
+static struct program_result run(const char *command, const char *out)
+{
+    const char *argv[] = {FOVSTATS, command, "s.db", "--simulated", out ? "-o" : NULL, out, NULL};
+    if (strcmp(command, "merge") == 0)
+        argv[3] = "-o", argv[4] = out, argv[5] = NULL;
+    return program_run(argv, NULL);
+}
+
+// The same rows in a file made by the schema of version 1.
+static void make_older(void)
+{
+    static char schema[1 << 16];
+    FILE *file = fopen(SOURCE_DIR "/tests/studies/store/schema_1.sql", "r");
+    assert_non_null(file);
+    schema[fread(schema, 1, sizeof schema - 1, file)] = '\0';
+    fclose(file);
+    assert_int_equal(rename("s.db", "now.db"), 0);
+    study_file_sql("s.db", schema);
+    study_file_sql(
+        "s.db",
+        "PRAGMA foreign_keys = OFF; ATTACH 'now.db' AS now; INSERT INTO protocol SELECT * FROM now.protocol;"
+        "INSERT INTO participant SELECT * FROM now.participant; INSERT INTO session SELECT * FROM "
+        "now.session; INSERT INTO segment SELECT * FROM now.segment; INSERT INTO condition SELECT * FROM "
+        "now.condition; INSERT INTO trial SELECT * FROM now.trial; INSERT INTO choice SELECT * FROM "
+        "now.choice; INSERT INTO exposure SELECT * FROM now.exposure; INSERT INTO gaze SELECT * FROM "
+        "now.gaze; INSERT INTO frame SELECT id, session_id, segment_id, trial_id, attempt, number, option,"
+        " condition_id, phase, fade_level, start_ns, cpu_us, gpu_us, present_ns, present_estimated, late,"
+        " gaze_id, gaze_age_us, fovea, fovea_source, effective, target_x_deg, target_y_deg, head_pose,"
+        " shaded_px, triangles FROM now.frame");
+}
+
+// A file of version 1 is read as it is, as if its frames had no distance; only what writes wants it anew.
+static void an_older_file_is_read(void **state)
+{
+    (void)state;
+    make("2", "8", "250", "90");
+    study_file_sql("s.db", "UPDATE frame SET target_m = NULL; UPDATE gaze SET eye = 'left' WHERE id < 3000");
+    struct program_result now = gaze("--json");
+    make_older();
+    struct program_result then = gaze("--json");
+    assert_string_equal(now.out, then.out);
+    program_free(&now);
+    program_free(&then);
+    static const char *const reading[][2] = {{"frames", NULL}, {"report", "s.html"}, {"export", "exported"}};
+    for (size_t i = 0; i < sizeof reading / sizeof reading[0]; i++) {
+        struct program_result r = run(reading[i][0], reading[i][1]);
+        if (r.code != 0)
+            fail_msg("%s: exit %d: %s", reading[i][0], r.code, r.err);
+        program_free(&r);
+    }
+    struct program_result r = run("merge", "m.db");
+    assert_int_equal(r.code, 1);
+    assert_non_null(
+        strstr(r.err, "s.db: is of an older version (1, now 2); open it once with fovstudy resume"));
+    program_free(&r);
+}
+
 // --- which samples count ---
 
 // Half the samples 0.2 degrees off, half 15 degrees, outside of Weier's region: accuracy is 7.6, distance 0.2.
@@ -295,6 +352,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_eye_sees_a_near_target_inwards),
         cmocka_unit_test(without_depth_an_eye_has_no_accuracy),
+        cmocka_unit_test(an_older_file_is_read),
         cmocka_unit_test(accuracy_has_no_region),
         cmocka_unit_test(pursuit_has_no_precision),
         cmocka_unit_test(dead_sittings_are_missing),
