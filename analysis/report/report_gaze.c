@@ -139,6 +139,36 @@ static void events_table(const struct report *r)
     table_foot(out);
 }
 
+// A cell over all the columns that one reason keeps empty.
+static void no_estimate(FILE *out, int columns, const char *why)
+{
+    fprintf(out, "<td colspan=\"%d\" class=\"word\">", columns);
+    html_printf(out, "not estimable: %s", why);
+    fputs("</td>", out);
+}
+
+static void sequence_row(FILE *out, const struct gaze_record *person)
+{
+    char vmax[GAZE_REASON_SIZE], c[GAZE_REASON_SIZE], power[GAZE_REASON_SIZE];
+    const struct stat_main_sequence *m = &person->main_sequence;
+    bool level = !gaze_sequence_problem(person, GAZE_VMAX, vmax);
+    bool shape = !gaze_sequence_problem(person, GAZE_C, c);
+    bool straight = !gaze_sequence_problem(person, GAZE_POWER, power);
+    bool same = !shape && strcmp(c, power) == 0;
+    if (level)
+        html_cell(out, "td", "%.0f [%.0f, %.0f]", m->vmax.value, m->vmax.low, m->vmax.high);
+    if (level && shape)
+        html_cell(out, "td", "%.2f [%.2f, %.2f]", m->c.value, m->c.low, m->c.high);
+    else
+        no_estimate(out, (level ? 1 : 2) + (same ? 2 : 0), c);
+    if (straight) {
+        html_cell(out, "td", "%.1f [%.1f, %.1f]", m->k.value, m->k.low, m->k.high);
+        html_cell(out, "td", "%.3f [%.3f, %.3f]", m->b.value, m->b.low, m->b.high);
+    } else if (!same) {
+        no_estimate(out, 2, power);
+    }
+}
+
 static void sequence_table(const struct report *r)
 {
     static const char *const headings[] = {"<participant", "<eye", "saccades", "V<sub>max</sub>, \u00b0/s",
@@ -148,24 +178,9 @@ static void sequence_table(const struct report *r)
     table_head(out, "Main sequence", headings);
     for (size_t i = 0; i < r->gaze.person_count; i++) {
         const struct gaze_record *person = &r->gaze.people[i];
-        const struct stat_main_sequence *m = &person->main_sequence;
         who(r, person);
-        html_cell(out, "td", "%zu", m->n);
-        if (gaze_sequence_problem(person, GAZE_VMAX, words)) {
-            html_cell(out, "td colspan=\"2\" class=\"word\"", "not estimable: %s", words);
-        } else {
-            html_cell(out, "td", "%.0f [%.0f, %.0f]", m->vmax.value, m->vmax.low, m->vmax.high);
-            if (gaze_sequence_problem(person, GAZE_C, words))
-                html_cell(out, "td class=\"word\"", "not estimable: %s", words);
-            else
-                html_cell(out, "td", "%.2f [%.2f, %.2f]", m->c.value, m->c.low, m->c.high);
-        }
-        if (gaze_sequence_problem(person, GAZE_POWER, words)) {
-            html_cell(out, "td colspan=\"2\" class=\"word\"", "not estimable: %s", words);
-        } else {
-            html_cell(out, "td", "%.1f [%.1f, %.1f]", m->k.value, m->k.low, m->k.high);
-            html_cell(out, "td", "%.3f [%.3f, %.3f]", m->b.value, m->b.low, m->b.high);
-        }
+        html_cell(out, "td", "%zu", person->main_sequence.n);
+        sequence_row(out, person);
         fputs("</tr>\n", out);
     }
     table_foot(out);
