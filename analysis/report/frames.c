@@ -65,13 +65,14 @@ static bool add_frame(void *user, const struct store_frame_row *row)
     f->last_start_ns = row->start_ns;
     group->frames++;
     group->late += row->late;
+    group->late_known += row->late_known;
     if (!isnan(row->shaded_px)) {
         group->shaded_px_sum += row->shaded_px;
         group->shaded_frames++;
     }
     f->frames->frames++;
     f->frames->late += row->late;
-    f->frames->late_unknown += !row->late_known;
+    f->frames->late_known += row->late_known;
     f->frames->simulated_clock = f->frames->simulated_clock || row->simulated_clock;
     return frames_pairing_frame(f->pairing, row) && add_time(&group->gpu, row->gpu_us / 1e3) &&
            add_time(&group->cpu, row->cpu_us / 1e3) && add_time(&group->interval, interval);

@@ -18,7 +18,7 @@ struct frame_group {
     size_t condition;  // SAMPLE_NONE: gray and text
     const char *label; // of the condition, "gray or text" for none
     const char *phase;
-    int64_t frames, late;
+    int64_t frames, late, late_known; // late_known: frames whose display told its refresh rate
     struct frame_times gpu, cpu, interval;
     double shaded_px_mean; // NaN where not known
     double shaded_px_sum;
@@ -28,8 +28,7 @@ struct frame_group {
 struct frames {
     size_t group_count;
     struct frame_group *groups; // stimulus first, then by label: words rising, numbers falling
-    int64_t frames, late;
-    int64_t late_unknown; // frames whose display told no refresh rate
+    int64_t frames, late, late_known;
     bool simulated_clock; // of any frame
 };
 

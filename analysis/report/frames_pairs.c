@@ -51,11 +51,10 @@ static bool close_trial(struct frames_pairing *f)
                 .test = f->trial->test,
                 .reference = f->trial->reference,
                 .measure = m,
-                .difference_ms = test - reference,
-                .log_ratio = test > 0 && reference > 0 ? log(test / reference) : (double)NAN,
-                .late = t->late_known ? (double)t->late[0] / (double)t->frames[0] -
-                                            (double)t->late[1] / (double)t->frames[1]
-                                      : (double)NAN};
+                .values = {test - reference, test > 0 && reference > 0 ? log(test / reference) : (double)NAN,
+                           t->late_known ? (double)t->late[0] / (double)t->frames[0] -
+                                               (double)t->late[1] / (double)t->frames[1]
+                                         : (double)NAN}};
     }
     for (int i = 0; i < 2; i++)
         for (int k = 0; k < FRAMES_MEASURES; k++)
@@ -111,53 +110,48 @@ static int by_pair(const void *x, const void *y)
     return (a->person > b->person) - (a->person < b->person);
 }
 
-// The values of one pair, person after person, as one mean per person in `means` (three arrays of `count`).
-static size_t person_means(const struct frames_value *values, size_t count, double *means)
+// One of the three values of a pair's trials, person after person; `means` has room for as many.
+static struct frames_mean mean_of(const struct frames_value *trials, size_t count, int which, double *means,
+                                  double conf)
 {
-    size_t people = 0;
-    for (size_t from = 0, to; from < count; from = to, people++) {
-        double sum[3] = {0, 0, 0};
-        for (to = from; to < count && values[to].person == values[from].person; to++) {
-            sum[0] += values[to].difference_ms;
-            sum[1] += values[to].log_ratio;
-            sum[2] += values[to].late;
+    struct frames_mean out = {0};
+    for (size_t from = 0, to; from < count; from = to) {
+        double sum = 0;
+        size_t known = 0;
+        for (to = from; to < count && trials[to].person == trials[from].person; to++) {
+            if (isnan(trials[to].values[which]))
+                continue;
+            sum += trials[to].values[which];
+            known++;
         }
-        for (size_t i = 0; i < 3; i++)
-            means[i * count + people] = sum[i] / (double)(to - from);
+        if (known)
+            means[out.people++] = sum / (double)known;
     }
-    return people;
+    for (size_t i = 0; i < out.people; i++)
+        out.mean += means[i] / (double)out.people;
+    if (out.people == 0)
+        out.mean = (double)NAN;
+    out.t = stat_ttest_one_sample(means, out.people, &(struct stat_ttest_options){.conf = conf});
+    return out;
 }
 
-static double mean(const double *values, size_t count)
+static bool add_pair(struct frames_pairs *out, const struct frames_value *trials, size_t count, double conf)
 {
-    double sum = 0;
-    for (size_t i = 0; i < count; i++)
-        sum += values[i];
-    return sum / (double)count;
-}
-
-static bool add_pair(struct frames_pairs *out, const struct frames_value *values, size_t count, double conf)
-{
-    const struct stat_ttest_options options = {.conf = conf};
-    double *means = malloc(3 * count * sizeof *means);
-    if (!means || !sample_grow(&out->pairs, out->count, sizeof out->pairs[0])) {
-        free(means);
+    double *room = malloc(count * sizeof *room);
+    if (!room || !sample_grow(&out->pairs, out->count, sizeof out->pairs[0])) {
+        free(room);
         return false;
     }
-    size_t n = person_means(values, count, means);
-    out->pairs[out->count++] =
-        (struct frames_pair){.test = values[0].test,
-                             .reference = values[0].reference,
-                             .measure = values[0].measure,
-                             .trials = count,
-                             .people = n,
-                             .difference_ms = mean(means, n),
-                             .ratio = exp(mean(means + count, n)),
-                             .late = mean(means + 2 * count, n),
-                             .difference_t = stat_ttest_one_sample(means, n, &options),
-                             .log_ratio_t = stat_ttest_one_sample(means + count, n, &options),
-                             .late_t = stat_ttest_one_sample(means + 2 * count, n, &options)};
-    free(means);
+    struct frames_pair pair = {.test = trials[0].test,
+                               .reference = trials[0].reference,
+                               .measure = trials[0].measure,
+                               .trials = count,
+                               .difference_ms = mean_of(trials, count, 0, room, conf),
+                               .log_ratio = mean_of(trials, count, 1, room, conf),
+                               .late = mean_of(trials, count, 2, room, conf)};
+    pair.people = pair.difference_ms.people;
+    out->pairs[out->count++] = pair;
+    free(room);
     return true;
 }
 

@@ -13,13 +13,18 @@
 
 enum frames_measure { FRAMES_GPU, FRAMES_CPU, FRAMES_MEASURES };
 
+// Over the people who have a trial in which it is known: a display may not tell its rate, a time may be 0.
+struct frames_mean {
+    size_t people;
+    double mean;         // NaN for nobody
+    struct stat_ttest t; // its interval is NaN for fewer than two people, or where all have the same value
+};
+
 struct frames_pair {
     size_t test, reference; // conditions
     enum frames_measure measure;
     size_t trials, people;
-    double difference_ms, ratio, late; // means over people; late: of shares, NaN where lateness is not known
-    // Intervals: NaN for fewer than two people, or where all have the same value.
-    struct stat_ttest difference_t, log_ratio_t, late_t;
+    struct frames_mean difference_ms, log_ratio, late; // late: of shares
 };
 
 struct frames_pairs {

@@ -20,7 +20,7 @@ struct frames_arriving { // of one trial
 struct frames_value { // one per trial
     size_t person, test, reference;
     enum frames_measure measure;
-    double difference_ms, log_ratio, late;
+    double values[3]; // difference in ms, log ratio, late; NaN where not known
 };
 
 struct frames_pairing { // zero but for the sample at first

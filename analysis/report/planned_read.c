@@ -62,7 +62,7 @@ static bool add_trial(void *user, const struct store_trial_row *row)
     return isnan(row->reaction_s) || add(f, &like, person, row->reaction_s, 1);
 }
 
-// Before and after: of each order by itself, for its differences have opposite meanings.
+// Before and after: of each pair of options in their order by itself, for the differences have other meanings.
 static bool add_before_after(struct filling *f, const struct store_rating_row *row, size_t person,
                              size_t condition)
 {
@@ -91,14 +91,16 @@ static bool add_before_after(struct filling *f, const struct store_rating_row *r
     if (!second || !waited || f->condition == condition)
         return true;
     f->session_id = 0;
-    snprintf(series, sizeof series, "%.100s, %.200s first", row->question,
-             sample->conditions[f->condition].words);
-    snprintf(words, sizeof words, "second minus first");
+    snprintf(series, sizeof series, "%.100s, second minus first: %.120s \u2212 %.120s", row->question,
+             sample->conditions[condition].words, sample->conditions[f->condition].words);
+    words[0] = '\0';
+    like.minuend = condition;
+    like.subtrahend = f->condition;
     return planned_data_add(f->data, &like, person, row->value - f->value, 1);
 }
 
 // Both options of a trial: test minus reference where a paired test asks, else each by itself.
-static bool add_option(struct filling *f, const struct store_rating_row *row, size_t person,
+static bool add_option(struct filling *f, const struct store_rating_row *row, size_t person, size_t condition,
                        struct planned_cell *like)
 {
     char series[192];
@@ -115,10 +117,13 @@ static bool add_option(struct filling *f, const struct store_rating_row *row, si
         snprintf(f->question, sizeof f->question, "%.127s", row->question);
         f->subject = row->subject;
         f->value = row->value;
+        f->condition = condition;
         return true;
     }
     f->trial_id = 0;
     like->difference = true;
+    like->minuend = row->subject == 't' ? condition : f->condition;
+    like->subtrahend = row->subject == 't' ? f->condition : condition;
     return add(f, like, person, row->subject == 't' ? row->value - f->value : f->value - row->value, 1);
 }
 
@@ -143,7 +148,7 @@ static bool add_rating(void *user, const struct store_rating_row *row)
                                 .test = SAMPLE_NONE,
                                 .reference = SAMPLE_NONE};
     if (strcmp(row->trial_kind, "rate") != 0 && row->subject != 's')
-        return add_option(f, row, person, &like);
+        return add_option(f, row, person, condition, &like);
     return add(f, &like, person, row->value, 1);
 }
 

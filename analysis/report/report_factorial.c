@@ -122,7 +122,7 @@ static void pair_row(FILE *out, const struct factorial_factor *factor, const str
 
 static void pairs_tables(const struct report *r, const struct factorial *f)
 {
-    char ci[32], caption[64];
+    char ci[32];
     snprintf(ci, sizeof ci, "%g&nbsp;%% interval", 100 * r->conf);
     const char *const headings[] = {"levels", "difference", ci, "t", "p", "p Holm", "d<sub>z</sub>", ci, NULL};
     bool any = false;
@@ -134,8 +134,7 @@ static void pairs_tables(const struct report *r, const struct factorial *f)
         fputs("<p>", r->out);
         html_printf(r->out, "Levels of %s, over all other factors:", factor->name);
         fputs("</p>\n", r->out);
-        snprintf(caption, sizeof caption, "Pairs of levels, paired t-tests, factor %zu", j + 1);
-        open_table(r->out, caption, "", headings, 1);
+        open_table(r->out, "Pairs of levels, paired t-tests", "", headings, 1);
         for (size_t i = 0; i < factor->pair_count; i++)
             pair_row(r->out, factor, &factor->pairs[i]);
         close_table(r->out);
@@ -159,10 +158,15 @@ static void left_out(const struct report *r, const struct factorial *f)
     if (f->left_count == 0)
         return;
     fputs("<p class=\"note\">", r->out);
-    html_printf(r->out, "Left out, since nothing is filled in: ");
-    for (size_t i = 0; i < f->left_count; i++)
-        html_printf(r->out, "%s%s (no rating in %zu of %zu cells)", i ? ", " : "",
-                    r->sample->people[f->left[i].person].code, f->left[i].missing, f->cells);
+    html_printf(r->out, "Left out, as missing ratings are never filled in: ");
+    for (size_t i = 0, alike = 1; i < f->left_count; i++, alike++) { // who lack as many one after another
+        html_printf(r->out, "%s%s", i ? ", " : "", r->sample->people[f->left[i].person].code);
+        if (i + 1 < f->left_count && f->left[i + 1].missing == f->left[i].missing)
+            continue;
+        html_printf(r->out, " (no rating in %zu of %zu cells%s)", f->left[i].missing, f->cells,
+                    alike > 1 ? " each" : "");
+        alike = 0;
+    }
     fputs(".</p>\n", r->out);
 }
 
@@ -199,7 +203,7 @@ void report_factorial(const struct report *r, const struct factorial *f, const s
             r, means,
             "Mean ratings per level, over all other factors, on the whole scale. Lines: intervals within "
             "people (Cousineau\u2013Morey), which compare the levels of one factor and do not say where a "
-            "mean lies.");
+            "mean lies; an arrow marks one that goes on beyond the scale.");
     effects_table(r, f);
     means_table(r, f);
     pairs_tables(r, f);

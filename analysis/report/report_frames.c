@@ -22,7 +22,12 @@ static void group_row(const struct report *r, const struct frame_group *g)
     html_cell(out, "th scope=\"row\" class=\"word\"", "%s", g->phase);
     html_cell(out, "td class=\"word\"", "%s", report_label(r, g->condition));
     html_cell(out, "td", "%" PRId64, g->frames);
-    html_cell(out, "td", "%" PRId64, g->late);
+    if (g->late_known == g->frames)
+        html_cell(out, "td", "%" PRId64, g->late);
+    else if (g->late_known)
+        html_cell(out, "td", "%" PRId64 " of %" PRId64, g->late, g->late_known);
+    else
+        html_cell(out, "td", "\u2013");
     times_cells(out, &g->gpu);
     times_cells(out, &g->cpu);
     if (g->interval.count)
@@ -36,14 +41,35 @@ static void group_row(const struct report *r, const struct frame_group *g)
     fputs("</tr>\n", out);
 }
 
-static void pair_cells(FILE *out, double value, double low, double high, const char *unit)
+// `known`: for whom the value is known, of the row's people: a display may not tell its rate, a time may be 0.
+static void pair_cell(FILE *out, size_t known, size_t people, const double value[3], const char *unit)
 {
-    if (isnan(value))
+    char of[64] = "";
+    if (known < people)
+        snprintf(of, sizeof of, ", known of %zu", known);
+    if (isnan(value[0]))
         html_cell(out, "td", "\u2013");
-    else if (isnan(low))
-        html_cell(out, "td", "%.2f%s", value, unit);
+    else if (isnan(value[1]))
+        html_cell(out, "td", "%.2f%s%s", value[0], unit, of);
     else
-        html_cell(out, "td", "%.2f%s (%.2f to %.2f)", value, unit, low, high);
+        html_cell(out, "td", "%.2f%s (%.2f to %.2f)%s", value[0], unit, value[1], value[2], of);
+}
+
+static void pair_row(const struct report *r, const struct frames_pair *p)
+{
+    const struct frames_mean *d = &p->difference_ms, *q = &p->log_ratio, *late = &p->late;
+    FILE *out = r->out;
+    fputs("<tr>", out);
+    html_cell(out, "th scope=\"row\" class=\"word\"", "%s", report_label(r, p->test));
+    html_cell(out, "td class=\"word\"", "%s", report_label(r, p->reference));
+    html_cell(out, "td class=\"word\"", "%s", p->measure == FRAMES_GPU ? "GPU" : "CPU");
+    html_cell(out, "td", "%zu", p->trials);
+    html_cell(out, "td", "%zu", p->people);
+    pair_cell(out, d->people, p->people, (double[]){d->mean, d->t.ci_low, d->t.ci_high}, "\u00a0ms");
+    pair_cell(out, q->people, p->people, (double[]){exp(q->mean), exp(q->t.ci_low), exp(q->t.ci_high)}, "");
+    pair_cell(out, late->people, p->people,
+              (double[]){100 * late->mean, 100 * late->t.ci_low, 100 * late->t.ci_high}, "\u00a0%");
+    fputs("</tr>\n", out);
 }
 
 static void pairs_table(const struct report *r)
@@ -67,19 +93,8 @@ static void pairs_table(const struct report *r)
           "scope=\"col\">people</th><th scope=\"col\">difference</th><th scope=\"col\">ratio</th><th "
           "scope=\"col\">late</th></tr></thead>\n<tbody>\n",
           out);
-    for (size_t i = 0; i < pairs->count; i++) {
-        const struct frames_pair *p = &pairs->pairs[i];
-        fputs("<tr>", out);
-        html_cell(out, "th scope=\"row\" class=\"word\"", "%s", report_label(r, p->test));
-        html_cell(out, "td class=\"word\"", "%s", report_label(r, p->reference));
-        html_cell(out, "td class=\"word\"", "%s", p->measure == FRAMES_GPU ? "GPU" : "CPU");
-        html_cell(out, "td", "%zu", p->trials);
-        html_cell(out, "td", "%zu", p->people);
-        pair_cells(out, p->difference_ms, p->difference_t.ci_low, p->difference_t.ci_high, "\u00a0ms");
-        pair_cells(out, p->ratio, exp(p->log_ratio_t.ci_low), exp(p->log_ratio_t.ci_high), "");
-        pair_cells(out, 100 * p->late, 100 * p->late_t.ci_low, 100 * p->late_t.ci_high, "\u00a0%");
-        fputs("</tr>\n", out);
-    }
+    for (size_t i = 0; i < pairs->count; i++)
+        pair_row(r, &pairs->pairs[i]);
     fputs("</tbody></table></div>\n", out);
 }
 
@@ -93,13 +108,16 @@ void report_frames(const struct report *r)
         return;
     }
     fputs("<p>", out);
-    html_printf(out, "%" PRId64 " frames, %" PRId64 " of them late (%.2f\u00a0%%).", f->frames, f->late,
-                100 * (double)f->late / (double)f->frames);
-    if (f->late_unknown)
+    html_printf(out, "%" PRId64 " frames", f->frames);
+    if (f->late_known)
+        html_printf(out, ", %" PRId64 " of them late (%.2f\u00a0%%%s)", f->late,
+                    100 * (double)f->late / (double)f->late_known,
+                    f->late_known < f->frames ? " of those known" : "");
+    if (f->late_known < f->frames)
         html_printf(out,
-                    " Of %" PRId64
-                    " frames it is not known whether they were late: the display told no refresh rate.",
-                    f->late_unknown);
+                    ". Of %" PRId64 " it is not known whether they were late: the display told no refresh rate",
+                    f->frames - f->late_known);
+    fputc('.', out);
     if (f->simulated_clock)
         fputs(" The clock was simulated: intervals and late frames are that clock\u2019s and say nothing of "
               "the machine.",
@@ -109,8 +127,9 @@ void report_frames(const struct report *r)
                   "Time per stimulus frame on the GPU (on the CPU where no GPU time is known): dot and number, "
                   "median; dark line to the 95th, pale line to the 99th percentile.");
     fputs("<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"Frame "
-          "times\"><table>\n<caption>Milliseconds; "
-          "percentiles of type 7</caption>\n<thead><tr><th scope=\"col\" class=\"word\">phase</th><th "
+          "times\"><table>\n<caption>Times in milliseconds; "
+          "percentiles as R\u2019s quantile() has them (type 7)</caption>\n<thead><tr><th scope=\"col\" "
+          "class=\"word\">phase</th><th "
           "scope=\"col\" "
           "class=\"word\">option</th><th scope=\"col\">frames</th><th scope=\"col\">late</th><th "
           "scope=\"col\">GPU "

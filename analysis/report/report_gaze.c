@@ -58,10 +58,19 @@ static void who(const struct report *r, const struct gaze_record *record)
 
 static void quality_table(const struct report *r, const struct gaze_record *records, size_t count)
 {
-    static const char *const headings[] = {"<participant", "session",    "<eye",     "samples",     "Hz",
-                                           "not valid, %", "missing, %", "accuracy", "offset x, y", NULL};
-    static const char *const people[] = {"<participant", "<eye",     "samples",     "Hz", "not valid, %",
-                                         "missing, %",   "accuracy", "offset x, y", NULL};
+    static const char *const headings[] = {"<participant",
+                                           "session",
+                                           "<eye",
+                                           "samples",
+                                           "Hz",
+                                           "not valid, %",
+                                           "missing, %",
+                                           "accuracy, \u00b0",
+                                           "offset x, y, \u00b0",
+                                           NULL};
+    static const char *const people[] = {
+        "<participant",        "<eye", "samples", "Hz", "not valid, %", "missing, %", "accuracy, \u00b0",
+        "offset x, y, \u00b0", NULL};
     FILE *out = r->out;
     bool of_sessions = records == r->gaze.records;
     table_head(out, of_sessions ? "Gaze per session: data loss and accuracy" : "Gaze: data loss and accuracy",
@@ -86,10 +95,11 @@ static void quality_table(const struct report *r, const struct gaze_record *reco
 
 static void precision_table(const struct report *r, const struct gaze_record *records, size_t count)
 {
-    static const char *const headings[] = {"<participant",  "session", "<eye", "RMS-S2S h, v, both",
-                                           "SD h, v, both", "BCEA",    NULL};
-    static const char *const people[] = {"<participant",  "<eye", "RMS-S2S h, v, both",
-                                         "SD h, v, both", "BCEA", NULL};
+    static const char *const headings[] = {
+        "<participant",          "session",         "<eye", "RMS-S2S h, v, both, \u00b0",
+        "SD h, v, both, \u00b0", "BCEA, deg\u00b2", NULL};
+    static const char *const people[] = {
+        "<participant", "<eye", "RMS-S2S h, v, both, \u00b0", "SD h, v, both, \u00b0", "BCEA, deg\u00b2", NULL};
     FILE *out = r->out;
     bool of_sessions = records == r->gaze.records;
     table_head(out, of_sessions ? "Precision per session" : "Precision", of_sessions ? headings : people);
@@ -171,8 +181,8 @@ static void sequence_row(FILE *out, const struct gaze_record *person)
 
 static void sequence_table(const struct report *r)
 {
-    static const char *const headings[] = {"<participant", "<eye", "saccades", "V<sub>max</sub>, \u00b0/s",
-                                           "c, \u00b0",    "k",    "b",        NULL};
+    static const char *const headings[] = {
+        "<participant", "<eye", "saccades", "V<sub>max</sub>, \u00b0/s", "c, \u00b0", "k, \u00b0/s", "b", NULL};
     FILE *out = r->out;
     char words[GAZE_WORDS_SIZE];
     table_head(out, "Main sequence", headings);
@@ -192,8 +202,9 @@ static void sequence_table(const struct report *r)
 
 static void targets_table(const struct report *r)
 {
-    static const char *const headings[] = {"<participant", "<eye",    "<target",          "samples", "M (SD)",
-                                           "median",       "outside", "target not known", NULL};
+    static const char *const headings[] = {
+        "<participant",     "<eye", "<target", "samples", "M (SD)", "median", "samples outside",
+        "target not known", NULL};
     const struct gaze_over *over = &r->gaze_over;
     FILE *out = r->out;
     int64_t flat = gaze_flat_samples(&r->gaze);

@@ -21,8 +21,8 @@ void report_gaze_limits(const struct report *r)
         worst = fmax(worst, g->checks[i].accuracy_deg);
     }
     if (g->check_count)
-        fprintf(out, "<p>Independent checks of the tracker: points %zu, not passed %zu.", g->check_count,
-                failed);
+        fprintf(out, "<p>Independent checks of the tracker at %zu point%s, %zu of them not passed.",
+                g->check_count, g->check_count == 1 ? "" : "s", failed);
     if (accuracy.n)
         fprintf(out, " Mean distance from the points: %.2f\u00b0, at worst %.2f\u00b0.", accuracy.mean, worst);
     fputs(g->check_count ? "</p>\n" : "", out);
@@ -61,12 +61,18 @@ void report_gaze_methods(const struct report *r)
         "where the eyes look freely, following slowly what moves counts as fixation. Saccades are faster than "
         "%g\u00b0/s over "
         "%g ms (I-VT, Salvucci & Goldberg 2000; Olsen 2012), fixations last %g ms or more; gaps over %g ms "
-        "break them, and what touches one is cut: counted, not measured. Main sequence: V = Vmax (1 \u2212 "
-        "exp(\u2212A / c)) and V = k A^b. Distance to the target as Weier et al. 2016, section 4.2.2: samples "
-        "within "
-        "%g\u00b0 left and right and %g\u00b0 up and down. Age: from a sample\u2019s arrival to the start of "
-        "work on the frame, and to light.",
-        o->bcea_share, o->rules.velocity_deg_s, o->rules.window_ms, o->rules.min_fixation_ms, o->gap_ms,
+        "break them, and what touches one is cut: counted, not measured. ",
+        o->bcea_share, o->rules.velocity_deg_s, o->rules.window_ms, o->rules.min_fixation_ms, o->gap_ms);
+    fputs("Main sequence, of peak velocity V and amplitude A: V = V<sub>max</sub> (1 \u2212 e<sup>\u2212A / "
+          "c</sup>) and "
+          "V\u00a0=\u00a0k\u00a0A<sup>b</sup>. ",
+          out);
+    html_printf(
+        out,
+        "Distance to the target as Weier et al. 2016, section 4.2.2: samples within %g\u00b0 left and right "
+        "and "
+        "%g\u00b0 up and down. Age: from a sample\u2019s arrival to the start of work on the frame, and to "
+        "light.",
         o->region_x_deg, o->region_y_deg);
     fputs("</p>\n", out);
 }

@@ -47,18 +47,22 @@ static bool print_text(const struct sample *sample, const struct frames *f, cons
         table_cell(&t, "%s", g->label);
         table_cell(&t, "%" PRId64, g->frames);
         table_cell(&t, "%" PRId64, g->late);
-        table_cell(&t, "%.2f", 100 * (double)g->late / (double)g->frames);
+        if (g->late_known)
+            table_cell(&t, "%.2f", 100 * (double)g->late / (double)g->late_known);
+        else
+            table_cell(&t, "-");
         times_cells(&t, &g->gpu);
         times_cells(&t, &g->cpu);
         times_cells(&t, &g->interval);
     }
     bool ok = table_print(&t, stdout);
     table_finish(&t);
-    printf("\nMilliseconds. Late: %" PRId64 " of %" PRId64 " frames.\n", f->late, f->frames);
-    if (f->late_unknown)
+    printf("\nMilliseconds. Late: %" PRId64 " of %" PRId64 " frames.\n", f->late, f->late_known);
+    if (f->late_known < f->frames)
         printf("Of %" PRId64
-               " frames it is not known whether they were late: the display told no refresh rate.\n",
-               f->late_unknown);
+               " frames it is not known whether they were late: the display told no refresh rate; percentages "
+               "are of the others.\n",
+               f->frames - f->late_known);
     if (f->simulated_clock)
         puts("The clock was simulated: intervals and late frames are that clock's and say nothing of the "
              "machine.");
@@ -85,6 +89,7 @@ static void print_json(const struct sample *sample, const struct frames *f, cons
     json_bool(&json, "simulated_clock", f->simulated_clock);
     json_integer(&json, "frames", f->frames);
     json_integer(&json, "late", f->late);
+    json_integer(&json, "late_known", f->late_known);
     json_open(&json, "groups", '[');
     for (size_t i = 0; i < f->group_count; i++) {
         const struct frame_group *g = &f->groups[i];
@@ -93,6 +98,7 @@ static void print_json(const struct sample *sample, const struct frames *f, cons
         json_text(&json, "option", g->label);
         json_integer(&json, "frames", g->frames);
         json_integer(&json, "late", g->late);
+        json_integer(&json, "late_known", g->late_known);
         times_json(&json, "gpu_ms", &g->gpu);
         times_json(&json, "cpu_ms", &g->cpu);
         times_json(&json, "interval_ms", &g->interval);

@@ -170,6 +170,10 @@ static void print_json(const struct sample *sample, const struct ratings *r)
             group_json(&json, sample, &q->groups[j]);
         json_close(&json, ']');
         if (q->compared) {
+            char which[600];
+            snprintf(which, sizeof which, "%s minus %s", label(sample, q->groups[0].first_condition),
+                     label(sample, q->groups[1].first_condition));
+            json_text(&json, "first_between_groups_is", which);
             ratings_ttest_json(&json, "first_between_groups", &q->first_between);
             ratings_effect_json(&json, "first_between_groups_d", &q->between_effect);
         }

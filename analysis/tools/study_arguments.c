@@ -41,6 +41,18 @@ int study_arguments_load_with(const struct command *command, int argc, char **ar
     return -1;
 }
 
+int study_arguments_run(const struct command *command, int argc, char **argv, study_analyse_fn analyse)
+{
+    struct study_arguments arguments;
+    struct sample sample;
+    int code = study_arguments_load(command, argc, argv, false, &arguments, &sample);
+    if (code >= 0)
+        return code;
+    code = analyse(command, &arguments, &sample);
+    sample_free(&sample);
+    return code;
+}
+
 static void count_used(const struct sample *sample, int64_t *sessions, int64_t *people)
 {
     *sessions = *people = 0;

@@ -59,3 +59,12 @@ void said_sentence(struct program_result r, int code, const char *part)
     assert_true(end && end[1] == '\0'); // one line
     program_free(&r);
 }
+
+void said_wrong_use(const struct said_case *cases, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        const char *argv[10] = {BUILD_DIR "/bin/fovstats"};
+        memcpy(argv + 1, cases[i].arguments, sizeof cases[i].arguments);
+        said_sentence(program_run(argv, NULL), 2, cases[i].part);
+    }
+}

@@ -210,7 +210,7 @@ static void make_frames(void)
             "fade_level, start_ns, cpu_us, gpu_us, present_estimated, late) VALUES(%ld, %ld, %ld, 1, %d, 'a', "
             "%d, 'stimulus', 0, %d, 1, %s, 1, %s);",
             id, p, p, trial + 60, p, p, id, number, fields[2][0] == 't' ? 2 : 1, number * 11000000, fields[3],
-            fields[4]);
+            fields[4][0] == 'N' ? "NULL" : fields[4]);
         number++;
     }
     fclose(file);
@@ -222,7 +222,7 @@ static void frames_of_both_options_agree_with_r(void **state)
 {
     (void)state;
     static const char *const keys[] = {"\"difference_ms\":", "\"ratio\":", "\"late_share\":"};
-    char line[256], *fields[4];
+    char line[256], *fields[5];
     make_frames();
     const char *argv[] = {fovstats, "frames", "f.db", "--json", NULL};
     struct program_result r = program_run(argv, NULL);
@@ -236,19 +236,42 @@ static void frames_of_both_options_agree_with_r(void **state)
         char *rest = line;
         assert_non_null(fgets(line, sizeof line, file));
         line[strcspn(line, "\n")] = '\0';
-        for (int k = 0; k < 4; k++)
+        for (int k = 0; k < 5; k++)
             fields[k] = reference_field(&rest, ',');
         const char *object = strstr(pairs, keys[i]);
         const char *const names[] = {"estimate", "ci_low", "ci_high"};
         assert_non_null(object);
+        assert_true(member(object, "people") == reference_number(fields[1]));
         for (int k = 0; k < 3; k++) {
-            double expected = reference_number(fields[k + 1]);
+            double expected = reference_number(fields[k + 2]);
             check_close("frames", fields[0], names[k], member(object, names[k]),
                         i == 1 ? exp(expected) : expected);
         }
     }
     fclose(file);
     program_free(&r);
+}
+
+// Percentages are of the frames whose display told its rate; nothing is called on time that nobody knows.
+static void late_frames_are_of_those_known(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *sql, *text;
+    } cases[] = {
+        {"UPDATE frame SET late = CASE WHEN id % 2 THEN NULL ELSE 1 END", " 100.00 "},
+        {"UPDATE frame SET late = NULL", "Late: 0 of 0 frames"},
+    };
+    make_frames();
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        study_file_sql("f.db", cases[i].sql);
+        const char *argv[] = {fovstats, "frames", "f.db", NULL};
+        struct program_result r = program_run(argv, NULL);
+        assert_int_equal(r.code, 0);
+        if (!strstr(r.out, cases[i].text) || strstr(r.out, " 0.00 "))
+            fail_msg("%s", r.out);
+        program_free(&r);
+    }
 }
 
 int main(void)
@@ -258,6 +281,7 @@ int main(void)
         cmocka_unit_test(what_cannot_be_estimated_is_said),
         cmocka_unit_test(halves_meet_the_convolution),
         cmocka_unit_test(frames_of_both_options_agree_with_r),
+        cmocka_unit_test(late_frames_are_of_those_known),
     };
     return cmocka_run_group_tests_name("effects", tests, program_enter_folder, program_leave_folder);
 }

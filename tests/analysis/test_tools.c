@@ -22,50 +22,53 @@ static const char fovstats[] = BUILD_DIR "/bin/fovstats";
 static void wrong_use(void **state)
 {
     (void)state;
-    said_sentence(program_run((const char *const[]){fovstats, NULL}, NULL), 2, "which subcommand?");
-    said_sentence(FOVSTATS("binomial"), 2, "no subcommand \"binomial\"");
-    said_sentence(FOVSTATS("binom"), 2, "needs K and N");
-    said_sentence(FOVSTATS("binom", "1", "2", "3"), 2, "needs K and N");
-    said_sentence(FOVSTATS("binom", "23", "22"), 2, "K is 23 but cannot exceed N, which is 22");
-    said_sentence(FOVSTATS("binom", "-1", "22"), 2, "K is \"-1\"");
-    said_sentence(FOVSTATS("binom", "x", "22"), 2, "K is \"x\"");
-    said_sentence(FOVSTATS("binom", "6", "22.5"), 2, "N is \"22.5\"");
-    said_sentence(FOVSTATS("binom", "0", "0"), 2, "N is \"0\"");
-    said_sentence(FOVSTATS("binom", "99999999999999999999", "22"), 2, "K is \"99999999999999999999\"");
-    said_sentence(FOVSTATS("binom", "1", "99999999999999999999"), 2, "N is \"99999999999999999999\"");
-    said_sentence(FOVSTATS("binom", "1", "1000000001"), 2, "from 1 to 1000000000");
-    said_sentence(FOVSTATS("binom", "1", "2", "--p", "1.5"), 2, "--p is 1.5 but must be from 0 to 1");
-    said_sentence(FOVSTATS("binom", "1", "2", "--p", "-0.1"), 2, "--p is -0.1");
-    said_sentence(FOVSTATS("binom", "1", "2", "--p", "nan"), 2, "--p is \"nan\" but must be a number");
-    said_sentence(FOVSTATS("binom", "1", "2", "--p", "half"), 2, "--p is \"half\" but must be a number");
-    said_sentence(FOVSTATS("binom", "1", "2", "--p", "1e999"), 2, "--p is \"1e999\" but must be a number");
-    said_sentence(FOVSTATS("binom", "1", "2", "--conf", "0"), 2, "--conf is 0 but must lie between 0 and 1");
-    said_sentence(FOVSTATS("binom", "1", "2", "--conf", "1"), 2, "--conf is 1 but must lie between 0 and 1");
-    said_sentence(FOVSTATS("binom", "1", "2", "--conf"), 2, "--conf needs a value");
-    said_sentence(FOVSTATS("binom", "1", "2", "--alternative", "both"), 2, "--alternative is \"both\"");
-    said_sentence(FOVSTATS("binom", "1", "2", "--p0", "7"), 2, "--p is 7");
-    said_sentence(FOVSTATS("binom", "1", "2", "--margin", "0.6"), 2, "--margin is 0.6 but must be above 0");
-    said_sentence(FOVSTATS("binom", "1", "2", "--margin", "-0.1"), 2, "--margin is -0.1");
-    said_sentence(FOVSTATS("binom", "1", "2", "--margin", "0.1", "--conf", "0.5"), 2,
-                  "--margin needs more than 0.5");
-    said_sentence(FOVSTATS("binom", "1", "2", "--prior", "1"), 2, "--prior is \"1\"");
-    said_sentence(FOVSTATS("binom", "1", "2", "--prior", "1,0"), 2, "--prior is \"1,0\"");
-    said_sentence(FOVSTATS("binom", "1", "2", "--prior", "1,2,3"), 2, "--prior is \"1,2,3\"");
-    said_sentence(FOVSTATS("binom", "1", "2", "--share", "1.01"), 2, "--share is 1.01");
-    said_sentence(FOVSTATS("binom", "1", "2", "--power", "1"), 2, "--power is 1 but must lie between 0 and 1");
-    said_sentence(FOVSTATS("binom", "1", "2", "--quiet"), 2, "--quiet is not an option");
-    said_sentence(FOVSTATS("choices"), 2, "needs at least one study file");
-    said_sentence(FOVSTATS("choices", "x.db", "--conf", "1"), 2, "--conf is 1");
-    said_sentence(FOVSTATS("report", "x.db"), 2, "needs -o FILE.html");
-    said_sentence(FOVSTATS("report", "x.db", "-o"), 2, "-o needs a value");
+    static const struct said_case cases[] = {
+        {{NULL}, "which subcommand?"},
+        {{"binomial"}, "no subcommand \"binomial\""},
+        {{"binom"}, "needs K and N"},
+        {{"binom", "1", "2", "3"}, "needs K and N"},
+        {{"binom", "23", "22"}, "K is 23 but cannot exceed N, which is 22"},
+        {{"binom", "-1", "22"}, "K is \"-1\""},
+        {{"binom", "x", "22"}, "K is \"x\""},
+        {{"binom", "6", "22.5"}, "N is \"22.5\""},
+        {{"binom", "0", "0"}, "N is \"0\""},
+        {{"binom", "99999999999999999999", "22"}, "K is \"99999999999999999999\""},
+        {{"binom", "1", "99999999999999999999"}, "N is \"99999999999999999999\""},
+        {{"binom", "1", "1000000001"}, "from 1 to 1000000000"},
+        {{"binom", "1", "2", "--p", "1.5"}, "--p is 1.5 but must be from 0 to 1"},
+        {{"binom", "1", "2", "--p", "-0.1"}, "--p is -0.1"},
+        {{"binom", "1", "2", "--p", "nan"}, "--p is \"nan\" but must be a number"},
+        {{"binom", "1", "2", "--p", "half"}, "--p is \"half\" but must be a number"},
+        {{"binom", "1", "2", "--p", "1e999"}, "--p is \"1e999\" but must be a number"},
+        {{"binom", "1", "2", "--conf", "0"}, "--conf is 0 but must lie between 0 and 1"},
+        {{"binom", "1", "2", "--conf", "1"}, "--conf is 1 but must lie between 0 and 1"},
+        {{"binom", "1", "2", "--conf"}, "--conf needs a value"},
+        {{"binom", "1", "2", "--alternative", "both"}, "--alternative is \"both\""},
+        {{"binom", "1", "2", "--p0", "7"}, "--p is 7"},
+        {{"binom", "1", "2", "--margin", "0.6"}, "--margin is 0.6 but must be above 0"},
+        {{"binom", "1", "2", "--margin", "-0.1"}, "--margin is -0.1"},
+        {{"binom", "1", "2", "--margin", "0.1", "--conf", "0.5"}, "--margin needs more than 0.5"},
+        {{"binom", "1", "2", "--prior", "1"}, "--prior is \"1\""},
+        {{"binom", "1", "2", "--prior", "1,0"}, "--prior is \"1,0\""},
+        {{"binom", "1", "2", "--prior", "1,2,3"}, "--prior is \"1,2,3\""},
+        {{"binom", "1", "2", "--share", "1.01"}, "--share is 1.01"},
+        {{"binom", "1", "2", "--power", "1"}, "--power is 1 but must lie between 0 and 1"},
+        {{"binom", "1", "2", "--quiet"}, "--quiet is not an option"},
+        {{"choices"}, "needs at least one study file"},
+        {{"choices", "x.db", "--conf", "1"}, "--conf is 1"},
+        {{"report", "x.db"}, "needs -o FILE.html"},
+        {{"report", "x.db", "-o"}, "-o needs a value"},
+    };
+    said_wrong_use(cases, sizeof cases / sizeof cases[0]);
 }
 
 static void help_everywhere(void **state)
 {
     (void)state;
-    const char *names[] = {"binom", "choices", "ratings", "frames", "power", "report"};
+    const char *names[] = {"anova", "binom",   "choices", "export",  "frames", "gaze",      "jod",
+                           "merge", "planned", "power",   "ratings", "report", "thresholds"};
     struct program_result all = FOVSTATS("--help");
-    for (int i = 0; i < 6; i++) {
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         struct program_result r = FOVSTATS(names[i], "--help");
         assert_int_equal(r.code, 0);
         assert_non_null(strstr(r.out, names[i]));
