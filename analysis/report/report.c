@@ -64,6 +64,12 @@ static void write_head(const struct report *r)
             r->sample->data_hash);
 }
 
+// The hash in a section's head says nothing of these.
+static void not_hashed(const struct report *r, const char *rows)
+{
+    fprintf(r->out, "<p class=\"source\">The data hash does not cover the rows of %s.</p>\n", rows);
+}
+
 static bool write_page(const struct report *r, char *error, size_t error_size)
 {
     write_head(r);
@@ -78,7 +84,9 @@ static bool write_page(const struct report *r, char *error, size_t error_size)
     report_effects(r);
     report_checks(r);
     report_frames(r);
+    not_hashed(r, "frames");
     report_gaze(r);
+    not_hashed(r, "gaze and frames");
     report_bench(r);
     if (!report_quality(r, error, error_size))
         return false;

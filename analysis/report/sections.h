@@ -92,6 +92,8 @@ bool report_load_frames(struct report *r, char *error, size_t error_size);
 void report_frames(const struct report *r);
 void report_effects(const struct report *r); // on choices, that are no preference
 void report_gaze(const struct report *r);
+void report_gaze_methods(const struct report *r); // of report_gaze()
+void report_gaze_limits(const struct report *r);
 void report_checks(const struct report *r);         // null and catch trials
 void report_what_if(const struct report *r);        // the same tests under other exclusions
 void report_what_if_scales(const struct report *r); // its rows of thresholds and JOD

@@ -104,11 +104,13 @@ static bool describe_events(struct bids *b, size_t run, size_t eye)
     FILE *out = bids_open(b, name);
     if (!out)
         return false;
-    snprintf(
-        text, sizeof text,
-        "Fixations and saccades found by fovstats " FOVSTUDY_VERSION ", not by the tracker: I-VT (Salvucci & "
-        "Goldberg 2000; Olsen 2012), saccades faster than %g deg/s over %g ms, fixations of at least %g ms.",
-        options.rules.velocity_deg_s, options.rules.window_ms, options.rules.min_fixation_ms);
+    snprintf(text, sizeof text,
+             "Fixations and saccades found by fovstats " FOVSTUDY_VERSION
+             ", not by the tracker: I-VT (Salvucci & "
+             "Goldberg 2000; Olsen 2012), saccades faster than %g deg/s over %g ms, fixations of at least %g "
+             "ms; a peak velocity is over %g ms, at least between a sample's neighbours.",
+             options.rules.velocity_deg_s, options.rules.window_ms, options.rules.min_fixation_ms,
+             options.rules.peak_ms);
     struct json json = {out, false};
     json_open(&json, NULL, '{');
     json_text(&json, "TaskName", task_of(b, run));

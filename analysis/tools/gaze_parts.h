@@ -6,6 +6,7 @@
 #include "analysis/tools/json.h"
 
 bool gaze_print_text(const struct sample *sample, const struct gaze_report *gaze, const struct gaze_over *over);
+void gaze_print_notes(const struct sample *sample, const struct gaze_report *gaze);
 void gaze_print_json(const struct sample *sample, const struct gaze_report *gaze, const struct gaze_over *over);
 
 // Events as they are found, in CSV or as an array of JSON objects. They wait in a file without a name until all

@@ -65,6 +65,24 @@ static bool pragma_int(struct store_reader *reader, const char *sql, int *out)
     return code == SQLITE_ROW;
 }
 
+// What each version lacks of the next one, in the place of the table: a name without a schema's is looked for
+// among the temporary ones first.
+static const char *const missing[STORE_VERSION - 1] = {
+    "CREATE TEMP VIEW frame AS SELECT *, NULL AS target_m FROM main.frame",
+};
+
+static bool complete_older(struct store_reader *reader)
+{
+    int code = sqlite3_exec(reader->db, "PRAGMA query_only = OFF", NULL, NULL, NULL);
+    for (int i = reader->version - 1; i < STORE_VERSION - 1 && code == SQLITE_OK; i++)
+        code = sqlite3_exec(reader->db, missing[i], NULL, NULL, NULL);
+    if (code == SQLITE_OK)
+        code = sqlite3_exec(reader->db, "PRAGMA query_only = ON", NULL, NULL, NULL);
+    if (code != SQLITE_OK)
+        store_reader_fail_sqlite(reader, code);
+    return code == SQLITE_OK;
+}
+
 static bool is_study(struct store_reader *reader)
 {
     int application = 0, version = 0;
@@ -82,12 +100,13 @@ static bool is_study(struct store_reader *reader)
                           reader->path, version, STORE_VERSION);
         return false;
     }
-    if (version < STORE_VERSION) {
+    if (version < 1) {
         store_reader_fail(reader, "%s: is of an older version (%d, now %d); open it once with fovstudy resume",
                           reader->path, version, STORE_VERSION);
         return false;
     }
-    return true;
+    reader->version = version;
+    return version == STORE_VERSION || complete_older(reader);
 }
 
 static bool side_file(const struct store_reader *reader, const char *suffix)
@@ -239,6 +258,11 @@ void store_reader_close(struct store_reader *reader)
     sqlite3_close(reader->db);
     free(reader->path);
     free(reader);
+}
+
+int store_reader_version(const struct store_reader *reader)
+{
+    return reader->version;
 }
 
 const char *store_reader_path(const struct store_reader *reader)

@@ -21,7 +21,8 @@
 struct store_reader;
 
 // NULL with a sentence naming the file in `error` where it is missing, a folder, not SQLite, another program's,
-// of another schema version than this program's, or damaged.
+// of a newer schema version than this program's, or damaged. What a file of an older version does not have is
+// NULL; the file is left as it is.
 struct store_reader *store_reader_open(const char *path, char *error, size_t error_size);
 // False with a sentence where a table or an index is damaged, or a row refers to one that is not there: queries
 // would then pass over rows without a word. Gaze samples and frames, which are many, only where `logs` asks for
@@ -29,6 +30,7 @@ struct store_reader *store_reader_open(const char *path, char *error, size_t err
 bool store_reader_whole(struct store_reader *reader, bool logs);
 void store_reader_close(struct store_reader *reader); // NULL is fine
 const char *store_reader_path(const struct store_reader *reader);
+int store_reader_version(const struct store_reader *reader); // of the file's schema
 // A sentence naming the file after a call that returned false; "" where the caller's function stopped it.
 const char *store_reader_error(const struct store_reader *reader);
 

@@ -138,7 +138,7 @@ static const char *const queries[] = {
     "c.gpu_us, "
     "c.present_ns, c.present_estimated, c.late, c.gaze_id, c.gaze_age_us, c.fovea, c.fovea_source, "
     "c.effective, "
-    "c.target_x_deg, c.target_y_deg, c.head_pose, c.shaded_px, c.triangles" OF_SESSION("frame"),
+    "c.target_x_deg, c.target_y_deg, c.target_m, c.head_pose, c.shaded_px, c.triangles" OF_SESSION("frame"),
     "SELECT coalesce(p.code, q.code) AS participant_id, coalesce(x.session_id, t.session_id) AS session_id, "
     "x.trial_id, x.rule, x.rule_set, x.reason AS exclusion_reason, x.\"by\" AS excluded_by, x.applied_at FROM "
     "exclusion AS x LEFT JOIN trial AS t ON t.id = x.trial_id LEFT JOIN session AS s ON s.id = "

@@ -90,7 +90,8 @@ static bool trial_row(sqlite3_stmt *s, const struct call *call)
                                    .fixation = text(s, 6),
                                    .done = sqlite3_column_int(s, 7),
                                    .practice = sqlite3_column_int(s, 8),
-                                   .tracker = sqlite3_column_int(s, 9)};
+                                   .tracker = sqlite3_column_int(s, 9),
+                                   .ipd_m = real(s, 10)};
     return call->trial(call->user, &row);
 }
 
@@ -98,7 +99,8 @@ bool store_read_gaze_trials(struct store_reader *reader, store_gaze_trial_fn eac
 {
     static const char sql[] =
         "SELECT t.id, t.session_id, t.segment_id, t.ordinal, t.started_ns, t.ended_ns, t.fixation,"
-        " t.status = 'done', t.kind = 'practice', coalesce(s.settings ->> '$.gaze', 'none') <> 'none'"
+        " t.status = 'done', t.kind = 'practice', coalesce(s.settings ->> '$.gaze', 'none') <> 'none',"
+        " CASE WHEN json_type(s.settings, '$.ipd_m') IN ('real', 'integer') THEN s.settings ->> '$.ipd_m' END"
         " FROM trial t JOIN session s ON s.id = t.session_id ORDER BY t.id";
     return read_all(reader, sql, 0, trial_row, &(struct call){.user = user, .trial = each}) &&
            store_reader_unchanged(reader);
@@ -109,14 +111,15 @@ static bool target_row(sqlite3_stmt *s, const struct call *call)
     struct store_target_row row = {.segment_id = sqlite3_column_int64(s, 0),
                                    .shown_ns = sqlite3_column_int64(s, 1),
                                    .x_deg = real(s, 2),
-                                   .y_deg = real(s, 3)};
+                                   .y_deg = real(s, 3),
+                                   .distance_m = real(s, 4)};
     return call->target(call->user, &row);
 }
 
 bool store_read_targets(struct store_reader *reader, int64_t trial_id, store_target_fn each, void *user)
 {
     static const char sql[] =
-        "SELECT segment_id, coalesce(present_ns, start_ns), target_x_deg, target_y_deg FROM frame"
+        "SELECT segment_id, coalesce(present_ns, start_ns), target_x_deg, target_y_deg, target_m FROM frame"
         " WHERE trial_id = ?1 AND phase = 'stimulus' AND target_x_deg IS NOT NULL AND target_y_deg IS NOT NULL"
         " ORDER BY id";
     return read_all(reader, sql, trial_id, target_row, &(struct call){.user = user, .target = each});

@@ -11,6 +11,7 @@ struct store_reader {
     sqlite3 *db;
     char *path;
     char error[512];
+    int version;      // of the file's schema
     bool at_rest;     // nobody wrote when it was opened
     struct stat info; // as it was then
 };

@@ -109,8 +109,8 @@ static void planned_tests_have_the_same_people(void **state)
                            "{\"method\":\"unpaired_t\",\"of\":\"rating\",\"per\":\"order\"},"
                            "{\"method\":\"mean\",\"of\":\"rating\",\"per\":\"cell\"}]'))");
     char *page = page_of("o.db");
-    expect_row(page, "q, regular first: second minus first", "<td>3</td><td>2.00</td>");
-    expect_row(page, "q, time_warped \u03b5 0.2 first: second minus first", "<td>2</td><td>2.00</td>");
+    expect_row(page, "q, second minus first: time_warped \u03b5 0.2 \u2212 regular", "<td>3</td><td>2.00</td>");
+    expect_row(page, "q, second minus first: regular \u2212 time_warped \u03b5 0.2", "<td>2</td><td>2.00</td>");
     expect_row(page, "q, first ratings: regular \u2212 time_warped \u03b5 0.2", "<td>5</td><td>-0.50</td>");
     expect_row(page, "regular", "<td class=\"word\">time_warped \u03b5 0.2</td><td>3</td>");
     // Person 1 rated time_warped 5 when regular had been seen: (5 + 7 + 8 + 9) / 4 of those rated second.
