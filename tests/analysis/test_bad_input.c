@@ -27,7 +27,7 @@ static void what_is_no_study(void **state)
         {"text.db", "text.db: is not a study file (not an SQLite database)"},
         {"other.db", "other.db: is another program's database"},
         {"newer.db", "newer.db: was written by a newer program (version 999"},
-        {"older.db", "older.db: is of an older version (0, now 1); open it once with fovstudy resume"},
+        {"older.db", "older.db: is of an older version (0, now 2); open it once with fovstudy resume"},
     };
     damaged_file_bytes("nothing.db", 0, 0);
     damaged_file_bytes("zeros.db", 0, 20000);
