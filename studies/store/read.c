@@ -255,6 +255,7 @@ void store_reader_close(struct store_reader *reader)
 {
     if (!reader)
         return;
+    sqlite3_finalize(reader->after);
     sqlite3_close(reader->db);
     free(reader->path);
     free(reader);

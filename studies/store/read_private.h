@@ -1,4 +1,4 @@
-// Shared by read.c and read_rows.c only.
+// Shared by read*.c only.
 #ifndef STUDIES_STORE_READ_PRIVATE_H
 #define STUDIES_STORE_READ_PRIVATE_H
 
@@ -11,9 +11,10 @@ struct store_reader {
     sqlite3 *db;
     char *path;
     char error[512];
-    int version;      // of the file's schema
-    bool at_rest;     // nobody wrote when it was opened
-    struct stat info; // as it was then
+    int version;         // of the file's schema
+    bool at_rest;        // nobody wrote when it was opened
+    struct stat info;    // as it was then
+    sqlite3_stmt *after; // of store_read_gaze_after; NULL before the first
 };
 
 void store_reader_fail(struct store_reader *reader, const char *format, ...)
