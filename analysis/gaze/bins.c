@@ -55,7 +55,7 @@ double gaze_bins_quantile(const struct gaze_bins *bins, double p)
     return INFINITY;
 }
 
-double gaze_bins_mean(const struct gaze_bins *bins, double low, double high)
+double gaze_bins_mean(const struct gaze_bins *bins, double low, double high, double *out_count)
 {
     double n = 0, sum = 0;
     for (size_t i = 0; i < bins->count; i++)
@@ -63,6 +63,34 @@ double gaze_bins_mean(const struct gaze_bins *bins, double low, double high)
             n += (double)bins->values[i];
             sum += bins->sums[i];
         }
+    *out_count = n;
+    return n > 0 ? sum / n : (double)NAN;
+}
+
+double gaze_bins_unit(const struct gaze_bins *bins, double unit, double most)
+{
+    double multiples = 0, sum = 0;
+    for (size_t i = 0; i < bins->count; i++) {
+        double here = (double)bins->values[i], times = bins->sums[i] / (here * unit);
+        if (here > 0 && times >= 0.5 && times <= most) {
+            multiples += here * round(times);
+            sum += bins->sums[i];
+        }
+    }
+    return multiples > 0 ? sum / multiples : (double)NAN;
+}
+
+double gaze_bins_fit(const struct gaze_bins *bins, double unit, double most, double *out_count)
+{
+    double n = 0, sum = 0;
+    for (size_t i = 0; i < bins->count; i++) {
+        double here = (double)bins->values[i], times = bins->sums[i] / (here * unit);
+        if (here > 0 && times <= most) {
+            n += here;
+            sum += here * cos(2 * M_PI * times);
+        }
+    }
+    *out_count = n;
     return n > 0 ? sum / n : (double)NAN;
 }
 

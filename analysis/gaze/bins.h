@@ -26,8 +26,14 @@ void gaze_bins_join(struct gaze_bins *to, const struct gaze_bins *from); // of t
 // The mean of the bin in which the share p of all values is reached; NaN for no values, infinity in the open
 // bin. p in [0, 1].
 double gaze_bins_quantile(const struct gaze_bins *bins, double p);
-// Mean of the values in bins that lie wholly in [low, high]; NaN where there is none.
-double gaze_bins_mean(const struct gaze_bins *bins, double low, double high);
+// Mean of the values in bins that lie wholly in [low, high], and how many they are; NaN where there is none.
+double gaze_bins_mean(const struct gaze_bins *bins, double low, double high, double *out_count);
+// Of values that are about whole multiples of `unit`, those in bins whose mean is at most `most` times it:
+// their sum by the sum of the multiples, which is the unit anew; NaN where there is none.
+double gaze_bins_unit(const struct gaze_bins *bins, double unit, double most);
+// How well they are multiples: the mean of cos(2 pi value / unit), 1 where each is one, about 0 where they have
+// nothing to do with it; NaN where there is none. How many they are.
+double gaze_bins_fit(const struct gaze_bins *bins, double unit, double most, double *out_count);
 // With values that are times between samples: how many samples are missing in them if one was due every
 // `interval`. An interval up to one and a half counts as none.
 double gaze_bins_missing(const struct gaze_bins *bins, double interval);

@@ -9,6 +9,7 @@ struct gaze_rules gaze_rules(enum gaze_method method)
     return (struct gaze_rules){.method = method,
                                .velocity_deg_s = 30,
                                .window_ms = 20,
+                               .peak_ms = 8,
                                .dispersion_deg = 1,
                                .min_fixation_ms = method == GAZE_IVT ? 60 : 100,
                                .min_saccade_ms = 10,
@@ -52,9 +53,9 @@ void gaze_found(const struct gaze_search *s, enum gaze_kind kind, size_t first, 
         event.y_deg /= (double)(last - first + 1);
     } else {
         event.amplitude_deg = gaze_angle_deg(from, to);
-        event.peak_deg_s = s->velocity[first];
-        for (size_t i = first + 1; i <= last; i++)
-            event.peak_deg_s = fmax(event.peak_deg_s, s->velocity[i]);
+        for (size_t i = first; i <= last; i++)
+            event.peak_deg_s =
+                fmax(event.peak_deg_s, gaze_velocity_at(s->points, s->count, s->rules->peak_ms, i));
     }
     s->each(s->user, &event, s->points);
 }

@@ -10,6 +10,15 @@ struct gaze_point gaze_point(int64_t time_ns, double x_deg, double y_deg)
     return (struct gaze_point){time_ns, x_deg, y_deg, {sin(x) * cos(y), sin(y), -cos(x) * cos(y)}};
 }
 
+struct gaze_point gaze_point_from_eye(const struct gaze_point *from_middle, double distance_m, double right_m)
+{
+    double x = distance_m * from_middle->unit[0] - right_m, y = distance_m * from_middle->unit[1];
+    double ahead = -distance_m * from_middle->unit[2], across = hypot(x, ahead);
+    if (!(hypot(across, y) > 0))
+        return gaze_point(from_middle->time_ns, (double)NAN, (double)NAN);
+    return gaze_point(from_middle->time_ns, atan2(x, ahead) / RADIANS, atan2(y, across) / RADIANS);
+}
+
 double gaze_angle_deg(const struct gaze_point *a, const struct gaze_point *b)
 {
     double apart = 0, together = 0;

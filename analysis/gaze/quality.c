@@ -56,8 +56,31 @@ double gaze_quality_rms(const struct gaze_quality *q)
     return root_mean(q, q->step_xx + q->step_yy);
 }
 
+// Where samples are lost at random, a share s of them, the share 1 - s of the times between those that came is
+// one interval long, the next longer ones two, and so on. Up to s = 0.8 the tenth shortest of a hundred is thus
+// one of single intervals. The mean of those around it, again about that mean until it stays, is about theirs;
+// longer and longer times, by the number of intervals they hold, give it to more digits.
+#define SHORT_SHARE 0.1
+enum { MEANS = 50 };
+// Times that are not multiples of what was found show that it is no interval. Errors of each sample's own time
+// with an SD of 10 % of the interval give a fit of 0.67, times without any rhythm 0, and single intervals too
+// few to be found (s = 0.95, say) less than that. Some fit by chance: where most times are longer than what is
+// looked at, and of fewer than 50 times where fewer than half are single.
+#define LEAST_FIT 0.5
+enum { FEW = 50, TOO_FEW = 10 };
+
 double gaze_quality_interval(const struct gaze_quality *q)
 {
-    double median = gaze_bins_quantile(&q->interval, 0.5);
-    return gaze_bins_mean(&q->interval, 0.5 * median, 1.5 * median);
+    static const double most[] = {2.5, 4.5, 8.5, 8.5};
+    const struct gaze_bins *times = &q->interval;
+    double interval = gaze_bins_quantile(times, SHORT_SHARE), before = NAN, single = 0, fitted = 0;
+    for (int i = 0; i < MEANS && interval != before; i++) {
+        before = interval;
+        interval = gaze_bins_mean(times, 0.5 * before, 1.5 * before, &single);
+    }
+    for (size_t i = 0; i < sizeof most / sizeof most[0]; i++)
+        interval = gaze_bins_unit(times, interval, most[i]);
+    double fit = gaze_bins_fit(times, interval, 8.5, &fitted), n = (double)times->n;
+    bool enough = times->n >= FEW || (times->n >= TOO_FEW && single >= 0.5 * n);
+    return enough && fitted >= 0.5 * n && fit >= LEAST_FIT ? interval : (double)NAN;
 }

@@ -25,8 +25,8 @@ void gaze_track_finish(struct gaze_track *track)
     track->velocity = NULL;
 }
 
-static void add_fixation(struct gaze_quality *q, const struct gaze_event *event,
-                         const struct gaze_point *points)
+static void add_precision(struct gaze_quality *q, const struct gaze_event *event,
+                          const struct gaze_point *points)
 {
     struct gaze_spread own = {.n = 0};
     double across = cos(event->y_deg * RADIANS);
@@ -41,6 +41,14 @@ static void add_fixation(struct gaze_quality *q, const struct gaze_event *event,
         q->steps++;
     }
     gaze_spread_pool(&q->within, &own);
+}
+
+static void add_fixation(const struct gaze_track *track, const struct gaze_event *event,
+                         const struct gaze_point *points)
+{
+    struct gaze_quality *q = track->quality;
+    if (!track->moving)
+        add_precision(q, event, points);
     if (event->cut)
         q->fixations_cut++;
     else
@@ -52,7 +60,7 @@ static void add_event(void *user, const struct gaze_event *event, const struct g
     struct gaze_track *track = user;
     struct gaze_quality *q = track->quality;
     if (event->kind == GAZE_FIXATION) {
-        add_fixation(q, event, points);
+        add_fixation(track, event, points);
     } else if (event->cut) {
         q->saccades_cut++;
     } else {

@@ -21,6 +21,26 @@ void gaze_velocities(const struct gaze_point *points, size_t count, double windo
     }
 }
 
+double gaze_velocity_at(const struct gaze_point *points, size_t count, double window_ms, size_t i)
+{
+    double half_ns = window_ms * 1e6 / 2;
+    size_t from = i ? i - 1 : 0, to = i + 1 < count ? i + 1 : i;
+    while (from > 0 && (double)(points[i].time_ns - points[from - 1].time_ns) <= half_ns)
+        from--;
+    while (to + 1 < count && (double)(points[to + 1].time_ns - points[i].time_ns) <= half_ns)
+        to++;
+    return gaze_angle_deg(&points[from], &points[to]) /
+           ((double)(points[to].time_ns - points[from].time_ns) / 1e9);
+}
+
+double gaze_velocity_span_ms(double interval_ms, double window_ms)
+{
+    if (!(interval_ms > 0))
+        return NAN;
+    // a window that is a multiple of the interval holds its ends, whatever the last digit says
+    return 2 * fmax(1, floor(window_ms / 2 / interval_ms * (1 + 1e-9))) * interval_ms;
+}
+
 // Samples first to last; last < first: none.
 struct run {
     bool some;

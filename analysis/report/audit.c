@@ -164,8 +164,13 @@ static bool check_stale(struct audit_pass *pass, const struct store_audit_frame_
         pass->gaze_id = row->gaze_id;
         pass->gaze_first_ns = row->start_ns;
     }
-    double limit = row->blink ? AUDIT_BLINK_MS : AUDIT_STALE_MS;
+    struct store_gaze_after after;
     double used_ms = row->gaze_id ? (double)(row->start_ns - pass->gaze_first_ns) / 1e6 : 0;
+    if (!(row->gaze_age_ms > AUDIT_STALE_MS || used_ms > AUDIT_STALE_MS))
+        return true;
+    if (!store_read_gaze_after(pass->sample->files[pass->file], row->gaze_id, row->segment_id, &after))
+        return false;
+    double limit = after.blink ? AUDIT_BLINK_MS : AUDIT_STALE_MS;
     return !(row->gaze_age_ms > limit || used_ms > limit) ||
            audit_note(pass, pass->session, row->trial_id, AUDIT_STALE, 1);
 }
@@ -184,8 +189,12 @@ static bool check_fovea(struct audit_pass *pass, const struct store_audit_frame_
     }
     if (row->differs && row->source != 'l' && !audit_note(pass, pass->session, row->trial_id, AUDIT_DIFFERS, 1))
         return false;
-    return !(row->source == 'g' && row->same_fovea && row->other_eye) ||
-           audit_note(pass, pass->session, row->trial_id, AUDIT_COPIED, 1);
+    struct store_gaze_after after;
+    if (row->source != 'g' || !row->same_fovea)
+        return true;
+    if (!store_read_gaze_after(pass->sample->files[pass->file], row->gaze_id, row->segment_id, &after))
+        return false;
+    return !after.other_eye || audit_note(pass, pass->session, row->trial_id, AUDIT_COPIED, 1);
 }
 
 struct frames_pass {

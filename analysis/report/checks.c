@@ -34,12 +34,28 @@ static void add_null(struct checks *c, struct check_person *person, const struct
         c->null_equal++;
         return;
     }
+    bool known = row->chosen_first >= 0;
     person->nulls++;
     person->null_a += row->chosen_a;
-    person->null_first += row->chosen_first;
+    person->first_known += known;
+    person->null_first += row->chosen_first == 1;
     c->nulls++;
-    c->null_a += row->chosen_a;
-    c->null_first += row->chosen_first;
+    c->first_unknown += !known;
+}
+
+// Where the question has no right answer, to take the obviously different option for the better one is wrong,
+// and so is to call them equal.
+static void add_catch(struct checks *c, struct check_person *person, const struct store_trial_row *row)
+{
+    if (row->correct < 0 && row->chosen == '?') {
+        c->catch_unknown++;
+        return;
+    }
+    bool missed = row->correct >= 0 ? row->correct == 0 : row->chosen != 'r';
+    person->catches++;
+    person->missed += missed;
+    c->catches++;
+    c->missed += missed;
 }
 
 static bool add_trial(void *user, const struct store_trial_row *row)
@@ -55,17 +71,10 @@ static bool add_trial(void *user, const struct store_trial_row *row)
     struct check_person *person = find_person(f, session);
     if (!person)
         return false;
-    if (null) {
+    if (null)
         add_null(f->checks, person, row);
-        return true;
-    }
-    // Where the question has no right answer, to take the obviously different option for the better one is
-    // wrong.
-    bool missed = row->correct >= 0 ? row->correct == 0 : row->chosen != 'r';
-    person->catches++;
-    person->missed += missed;
-    f->checks->catches++;
-    f->checks->missed += missed;
+    else
+        add_catch(f->checks, person, row);
     return true;
 }
 
@@ -94,7 +103,7 @@ static bool finish(struct checks *c, double conf)
         counts[i] = (struct stat_person){c->people[i].null_a, c->people[i].nulls};
     finish_bias(&c->side, counts, c->person_count, conf);
     for (size_t i = 0; i < c->person_count; i++)
-        counts[i].k = c->people[i].null_first;
+        counts[i] = (struct stat_person){c->people[i].null_first, c->people[i].first_known};
     finish_bias(&c->first, counts, c->person_count, conf);
     free(counts);
     double p[2] = {c->side.p_value, c->first.p_value};

@@ -20,16 +20,19 @@ struct check_bias {
 
 struct check_person {
     size_t person; // index
-    int64_t nulls, null_a, null_first, catches, missed;
-    bool excluded; // all sessions
+    int64_t nulls, null_a, catches, missed;
+    int64_t first_known, null_first; // null trials of which it is known what was shown first
+    bool excluded;                   // all sessions
 };
 
 struct checks {
     size_t person_count;
-    struct check_person *people;                   // those with a null or catch trial, as the sample has them
-    int64_t nulls, null_a, null_first, null_equal; // nulls without "equal"; slot a, the first shown one chosen
-    struct check_bias side, first;
-    int64_t catches, missed; // of everybody
+    struct check_person *people;   // those with a null or catch trial, as the sample has them
+    int64_t nulls, null_equal;     // nulls without "equal"
+    struct check_bias side, first; // slot a, the first shown one chosen
+    int64_t first_unknown;         // null trials without "equal" of which it is not known what was shown first
+    int64_t catches, missed;       // of everybody
+    int64_t catch_unknown;         // catch trials left out: nothing tells which answer was right
 };
 
 bool checks_load(struct checks *out, struct sample *sample, double conf, char *error, size_t error_size);

@@ -1,7 +1,7 @@
 // Within-person factors by the per-person test: a person's share at one level minus the share at another, in
 // cells that are otherwise the same, averaged over such pairs of cells; then Student's t over people. No
 // person's answers are joined, and a cell of many answers weighs no more than one of few.
-#include "analysis/report/choices.h"
+#include "analysis/report/choice_design.h"
 #include "analysis/stats/multiple.h"
 
 #include <math.h>
@@ -89,6 +89,10 @@ static bool fill(struct choice_contrast *contrast, const struct choices *c)
         for (size_t j = i + 1; ok && j < c->cell_count; j++)
             if (are_pair(&c->cells[i], &c->cells[j], &level) &&
                 is_of(contrast, &c->cells[i], &c->cells[j], level)) {
+                struct choice_design design;
+                ok = choice_design(c, i, level, &design);
+                if (!ok || !design.within)
+                    continue;
                 contrast->cell_pairs++;
                 ok = add_pair(&sums, &c->cells[i], &c->cells[j]);
             }
@@ -132,10 +136,15 @@ static bool collect(struct choices *c)
     for (size_t i = 0; i < c->cell_count; i++)
         for (size_t j = i + 1; j < c->cell_count; j++) {
             const struct choice_cell *a = &c->cells[i], *b = &c->cells[j];
+            struct choice_design design;
             bool known = !are_pair(a, b, &level);
             for (size_t k = 0; k < c->contrast_count && !known; k++)
                 known = is_of(&c->contrasts[k], a, b, level);
             if (known)
+                continue;
+            if (!choice_design(c, i, level, &design))
+                return false;
+            if (!design.within) // compared between people, by choice_factors.h
                 continue;
             const struct choice_level *x = &a->levels[level], *y = &b->levels[level];
             if (!insert(c, (struct choice_contrast){

@@ -9,8 +9,18 @@
 // margin as in equivalence.h; 1 - choices.conf must lie below one half. NaN where there is nothing to test.
 struct stat_equivalence choice_equivalence(const struct choices *choices, const struct choice_cell *cell,
                                            double margin);
-// What both tests together show, "not estimable" where there is no p. `p_difference`: of the cell's own test.
-const char *choice_equivalence_words(double p_difference, const struct stat_equivalence *equivalence,
+
+struct choice_equality {
+    struct stat_equivalence test;
+    double holm;
+};
+
+// The same of every cell, with Holm's p over them: choices.cell_count, which the caller frees. `right`: cells
+// of questions with a right answer too, which are NaN otherwise. NULL where memory ran out.
+struct choice_equality *choice_equalities(const struct choices *choices, double margin, bool right);
+// What the tests of difference and of equivalence show together, both by Holm's p over cells: a claim of
+// equality is one of as many as there are cells. "not estimable" where there is no p.
+const char *choice_equivalence_words(const struct choice_cell *cell, const struct choice_equality *equality,
                                      double alpha);
 const char *choice_equivalence_method(const struct choice_cell *cell); // "" where nobody answered
 

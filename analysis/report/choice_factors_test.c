@@ -1,7 +1,6 @@
-// The tests of one set of cells.
+// The tests of one set of cells, or of two of its levels.
 //   Interval of a difference of independent proportions: Newcombe, R. G. (1998), Statistics in Medicine 17,
 //   873-890, method 10: from Wilson's limits of either.
-//   Within people the differences are -1, 0 and 1, and their mean has Student's t interval.
 #include "analysis/report/choice_factors_private.h"
 #include "analysis/stats/chi_squared.h"
 #include "analysis/stats/cochran.h"
@@ -10,45 +9,48 @@
 #include "analysis/stats/mcnemar.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 enum { SEED = 1 }; // of arrangements drawn at random, so that a report repeats exactly
 
-const char *choice_factor_word(enum choice_factor_method method)
+static void say(struct choice_factor_test *test, const char *why)
 {
-    static const char *const words[] = {[FACTOR_FISHER] = "Fisher",
-                                        [FACTOR_EXCHANGE] = "exchange of people",
-                                        [FACTOR_MCNEMAR] = "McNemar",
-                                        [FACTOR_COCHRAN] = "Cochran's Q"};
-    return words[method];
+    snprintf(test->none, sizeof test->none, "%s", why);
 }
 
-static struct stat_interval newcombe(const struct choice_cell *a, const struct choice_cell *b, double conf)
+static void set_shares(struct choice_factor_test *test, const struct factor_people *people)
 {
-    struct stat_interval x = stat_wilson(a->chosen, a->n, conf, STAT_TWO_SIDED),
-                         y = stat_wilson(b->chosen, b->n, conf, STAT_TWO_SIDED);
-    double p = (double)a->chosen / (double)a->n, q = (double)b->chosen / (double)b->n;
+    test->share_a = stat_people_share(factor_people_at(people, 0), people->people);
+    test->share_b = stat_people_share(factor_people_at(people, 1), people->people);
+    test->difference = test->share_a - test->share_b;
+}
+
+static struct stat_interval newcombe(const struct stat_people *a, const struct stat_people *b, double conf)
+{
+    struct stat_interval x = stat_wilson(a->k, a->n, conf, STAT_TWO_SIDED),
+                         y = stat_wilson(b->k, b->n, conf, STAT_TWO_SIDED);
+    double p = (double)a->k / (double)a->n, q = (double)b->k / (double)b->n;
     return (struct stat_interval){p - q - hypot(p - x.low, y.high - q), p - q + hypot(x.high - p, q - y.low)};
 }
 
-static bool exchange(struct choice_factor_test *test, const struct factor_set *set)
+static bool exchange(struct choice_factor_test *test, const struct factor_people *of)
 {
-    int *group = malloc(set->most * sizeof *group);
-    int64_t *counts = malloc(2 * set->most * sizeof *counts);
-    size_t people = 0;
-    for (size_t g = 0; group && counts && g < set->count; g++)
-        for (size_t k = 0; k < set->cells[g]->people; k++) {
-            const struct stat_person *person = &set->cells[g]->counts[k];
+    int *group = malloc((of->people + 1) * sizeof *group);
+    int64_t *counts = malloc((2 * of->people + 1) * sizeof *counts);
+    bool ok = group && counts;
+    for (size_t g = 0; ok && g < of->levels; g++)
+        for (size_t p = 0; p < of->people; p++) {
+            const struct stat_person *person = &factor_people_at(of, g)[p];
             if (person->n == 0)
                 continue;
-            group[people] = (int)g;
-            counts[2 * people] = person->k;
-            counts[2 * people++ + 1] = person->n - person->k;
+            group[p] = (int)g;
+            counts[2 * p] = person->k;
+            counts[2 * p + 1] = person->n - person->k;
         }
-    bool ok = group && counts;
     if (ok) {
-        const struct stat_groups_of_people of = {people, set->count, 2, group, counts};
-        struct stat_permutation p = stat_exchange_test(&of, (struct stat_permuting){.seed = SEED});
+        const struct stat_groups_of_people people = {of->people, of->levels, 2, group, counts};
+        struct stat_permutation p = stat_exchange_test(&people, (struct stat_permuting){.seed = SEED});
         test->method = FACTOR_EXCHANGE;
         test->statistic = p.statistic;
         test->p_value = p.p_value;
@@ -59,56 +61,48 @@ static bool exchange(struct choice_factor_test *test, const struct factor_set *s
     return ok;
 }
 
-static bool shares_of(const struct choice_cell *cell, double **out, size_t *count)
+static size_t shares_of(const struct stat_person *counts, size_t people, double *out)
 {
-    *out = malloc((cell->people + 1) * sizeof **out);
-    *count = 0;
-    for (size_t i = 0; *out && i < cell->people; i++)
-        if (cell->counts[i].n)
-            (*out)[(*count)++] = (double)cell->counts[i].k / (double)cell->counts[i].n;
-    return *out != NULL;
+    size_t count = 0;
+    for (size_t i = 0; i < people; i++)
+        if (counts[i].n)
+            out[count++] = (double)counts[i].k / (double)counts[i].n;
+    return count;
 }
 
-static bool welch(struct choice_factor_test *test, const struct factor_set *set, double conf)
+static bool welch(struct choice_factor_test *test, const struct factor_people *of, double conf)
 {
-    double *a = NULL, *b = NULL;
-    size_t n_a, n_b;
-    bool ok = shares_of(set->cells[0], &a, &n_a) && shares_of(set->cells[1], &b, &n_b);
-    if (ok) {
-        struct stat_ttest t = stat_ttest_welch(a, n_a, b, n_b, &(struct stat_ttest_options){.conf = conf});
-        test->ci = (struct stat_interval){t.ci_low, t.ci_high};
-    }
+    double *a = malloc((2 * of->people + 1) * sizeof *a), *b = a + of->people;
+    if (!a)
+        return false;
+    size_t n_a = shares_of(factor_people_at(of, 0), of->people, a);
+    size_t n_b = shares_of(factor_people_at(of, 1), of->people, b);
+    struct stat_ttest t = stat_ttest_welch(a, n_a, b, n_b, &(struct stat_ttest_options){.conf = conf});
+    test->ci = (struct stat_interval){t.ci_low, t.ci_high};
     free(a);
-    free(b);
-    return ok;
+    return true;
 }
 
-static void count_people(struct choice_factor_test *test, const struct factor_set *set)
+static bool one_each(struct choice_factor_test *test, const struct factor_people *of,
+                     const struct stat_people *sums, double conf)
 {
-    for (size_t i = 0; i < set->count; i++)
-        test->people += stat_people_sum(set->cells[i]->counts, set->cells[i]->people).people;
-}
-
-static bool one_each(struct choice_factor_test *test, const struct factor_set *set, double conf)
-{
-    int64_t counts[2 * FACTOR_LEVELS];
-    for (size_t i = 0; i < set->count; i++) {
-        counts[2 * i] = set->cells[i]->chosen;
-        counts[2 * i + 1] = set->cells[i]->n - set->cells[i]->chosen;
+    int64_t counts[2 * CHOICE_FACTOR_LEVELS];
+    for (size_t i = 0; i < of->levels; i++) {
+        counts[2 * i] = sums[i].k;
+        counts[2 * i + 1] = sums[i].n - sums[i].k;
     }
-    const struct stat_counts table = {counts, (int)set->count, 2};
+    const struct stat_counts table = {counts, (int)of->levels, 2};
     struct stat_chi_squared chi = stat_chi_squared_test(table);
-    test->method = FACTOR_FISHER;
-    if (set->count == 2) {
+    if (of->levels == 2) {
         struct stat_fisher f = stat_fisher_2x2(counts, conf, STAT_TWO_SIDED);
         test->p_value = f.p_value;
         test->odds_ratio = f.odds_ratio;
         test->odds_ci = f.ci;
-        test->ci = newcombe(set->cells[0], set->cells[1], conf);
+        test->ci = newcombe(&sums[0], &sums[1], conf);
     } else {
         test->p_value = stat_fisher_p(table);
         if (isnan(test->p_value)) // too many tables to count
-            return exchange(test, set);
+            return exchange(test, of);
     }
     test->statistic = chi.statistic;
     test->df = chi.df;
@@ -116,99 +110,85 @@ static bool one_each(struct choice_factor_test *test, const struct factor_set *s
     return true;
 }
 
-bool factor_test_between(struct choice_factor_test *test, const struct factor_set *set, double conf)
+bool factor_test_between(struct choice_factor_test *test, const struct factor_people *of, double conf)
 {
-    count_people(test, set);
-    if (set->count == 2) {
-        test->share_a = stat_people_share(set->cells[0]->counts, set->cells[0]->people);
-        test->share_b = stat_people_share(set->cells[1]->counts, set->cells[1]->people);
-        test->difference = test->share_a - test->share_b;
+    struct stat_people sums[CHOICE_FACTOR_LEVELS];
+    int64_t k = 0, n = 0;
+    test->method = of->several ? FACTOR_EXCHANGE : FACTOR_FISHER;
+    for (size_t i = 0; i < of->levels; i++) {
+        sums[i] = stat_people_sum(factor_people_at(of, i), of->people);
+        k += sums[i].k;
+        n += sums[i].n;
+        if (sums[i].people == 0) {
+            snprintf(test->none, sizeof test->none,
+                     "everybody who answered at %.60s answered at other levels too and is left out",
+                     test->level[i]);
+            return true;
+        }
     }
-    if (!set->several)
-        return one_each(test, set, conf);
-    return exchange(test, set) && (set->count > 2 || welch(test, set, conf));
+    if (of->levels == 2)
+        set_shares(test, of);
+    bool ok = of->several ? exchange(test, of) && (of->levels > 2 || welch(test, of, conf))
+                          : one_each(test, of, sums, conf);
+    if (ok && isnan(test->p_value))
+        say(test,
+            k == 0 || k == n ? "all answers are the same" : "there are too many people or answers for it");
+    return ok;
 }
 
 // --- the same people ---
 
-// Whether a person of the set's cell `from` has answered in no cell before it.
-static bool is_new(const struct factor_set *set, size_t from, size_t person)
-{
-    for (size_t i = 0; i < from; i++)
-        if (factor_counts(set->cells[i], person))
-            return false;
-    return true;
-}
-
-// Rows of the people with an answer at every level; counts the others.
-static void fill_rows(struct choice_factor_test *test, const struct factor_set *set, unsigned char *rows)
-{
-    for (size_t i = 0; i < set->count; i++)
-        for (size_t k = 0; k < set->cells[i]->people; k++) {
-            size_t person = set->cells[i]->person[k], levels = 0;
-            if (set->cells[i]->counts[k].n == 0 || !is_new(set, i, person))
-                continue;
-            for (size_t j = 0; j < set->count; j++) {
-                const struct stat_person *counts = factor_counts(set->cells[j], person);
-                rows[test->people * set->count + j] = counts && counts->k > 0;
-                levels += counts != NULL;
-            }
-            if (levels == set->count)
-                test->people++;
-            else
-                test->left_out++;
-        }
-}
-
-static bool mcnemar(struct choice_factor_test *test, const unsigned char *rows, double conf)
+static void mcnemar(struct choice_factor_test *test, const struct factor_people *of, double conf)
 {
     int64_t b = 0, c = 0;
-    double *difference = malloc((test->people + 1) * sizeof *difference), a_sum = 0, b_sum = 0;
-    for (size_t i = 0; difference && i < test->people; i++) {
-        b += rows[2 * i] && !rows[2 * i + 1];
-        c += !rows[2 * i] && rows[2 * i + 1];
-        a_sum += rows[2 * i];
-        b_sum += rows[2 * i + 1];
-        difference[i] = (double)rows[2 * i] - (double)rows[2 * i + 1];
+    const struct stat_person *x = factor_people_at(of, 0), *y = factor_people_at(of, 1);
+    for (size_t i = 0; i < of->people; i++) {
+        b += x[i].k > y[i].k;
+        c += x[i].k < y[i].k;
     }
-    if (!difference)
-        return false;
     struct stat_mcnemar m = stat_mcnemar_test(b, c, conf);
-    struct stat_ttest t =
-        stat_ttest_one_sample(difference, test->people, &(struct stat_ttest_options){.conf = conf});
-    double n = (double)test->people;
     test->p_value = m.p_exact;
     test->statistic = m.chi_squared;
-    test->df = 1;
+    test->df = isnan(m.chi_squared) ? (double)NAN : 1;
     test->p_asymptotic = m.p_value;
     test->odds_ratio = m.odds_ratio;
     test->odds_ci = m.ci;
-    test->share_a = a_sum / n;
-    test->share_b = b_sum / n;
-    test->difference = (a_sum - b_sum) / n;
-    test->ci = (struct stat_interval){t.ci_low, t.ci_high};
-    free(difference);
+    test->ci = stat_mcnemar_difference(b, c, (int64_t)of->people, conf);
+    set_shares(test, of);
+}
+
+static bool cochran(struct choice_factor_test *test, const struct factor_people *of)
+{
+    unsigned char *rows = calloc(of->people * of->levels, 1);
+    if (!rows)
+        return false;
+    bool differ = false;
+    for (size_t i = 0; i < of->people; i++)
+        for (size_t j = 0; j < of->levels; j++) {
+            rows[i * of->levels + j] = factor_people_at(of, j)[i].k > 0;
+            differ = differ || rows[i * of->levels + j] != rows[i * of->levels];
+        }
+    struct stat_cochran q = stat_cochran_q(rows, of->people, of->levels, (struct stat_permuting){.seed = SEED});
+    test->p_value = q.permutation.p_value;
+    test->p_error = isnan(q.permutation.standard_error) ? 0 : q.permutation.standard_error;
+    test->statistic = q.statistic;
+    test->df = q.df;
+    test->p_asymptotic = q.p_value;
+    if (isnan(test->p_value))
+        say(test, differ ? "there are too many people for it" : "nobody's answers differ between levels");
+    free(rows);
     return true;
 }
 
-bool factor_test_within(struct choice_factor_test *test, const struct factor_set *set, double conf)
+bool factor_test_within(struct choice_factor_test *test, const struct factor_people *of, double conf)
 {
-    unsigned char *rows = calloc((set->most + 1) * set->count, 1);
-    bool ok = rows != NULL;
-    test->method = set->count == 2 ? FACTOR_MCNEMAR : FACTOR_COCHRAN;
-    if (ok)
-        fill_rows(test, set, rows);
-    if (ok && test->people > 0 && set->count == 2) {
-        ok = mcnemar(test, rows, conf);
-    } else if (ok && test->people > 0) {
-        struct stat_cochran q =
-            stat_cochran_q(rows, test->people, set->count, (struct stat_permuting){.seed = SEED});
-        test->p_value = q.permutation.p_value;
-        test->p_error = isnan(q.permutation.standard_error) ? 0 : q.permutation.standard_error;
-        test->statistic = q.statistic;
-        test->df = q.df;
-        test->p_asymptotic = q.p_value;
+    test->method = of->levels == 2 ? FACTOR_MCNEMAR : FACTOR_COCHRAN;
+    if (of->people == 0) {
+        say(test, of->levels == 2 ? "nobody answered at both levels" : "nobody answered at every level");
+        return true;
     }
-    free(rows);
-    return ok;
+    if (of->levels > 2)
+        return cochran(test, of);
+    mcnemar(test, of, conf);
+    return true;
 }

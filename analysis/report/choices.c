@@ -1,5 +1,6 @@
 #include "analysis/report/choices.h"
 
+#include "analysis/report/choices_private.h"
 #include "analysis/stats/multiple.h"
 #include "analysis/stats/quantile.h"
 
@@ -140,7 +141,8 @@ static bool add_trial(void *user, const struct store_trial_row *row)
         return false;
     c->answers++;
     c->equal += row->chosen == '=';
-    c->chosen_first += row->chosen_first;
+    c->chosen_first += row->chosen_first == 1;
+    c->first_known += row->chosen != '=' && row->chosen_first >= 0;
     c->chosen_a += row->chosen_a;
     return true;
 }
@@ -269,6 +271,11 @@ bool choices_load_for(struct choices *out, struct sample *sample, const struct c
         if (!ok && store_reader_error(sample->files[i])[0])
             snprintf(error, error_size, "%s", store_reader_error(sample->files[i]));
     }
+    for (size_t i = 0; ok && i < sample->file_count; i++) { // once every file's cells are known
+        ok = choices_plan(out, sample, i);
+        if (!ok && store_reader_error(sample->files[i])[0])
+            snprintf(error, error_size, "%s", store_reader_error(sample->files[i]));
+    }
     if (ok && tell_apart(out, sample) && finish(out, &d)) {
         error[0] = '\0';
         return true;
@@ -283,6 +290,7 @@ void choices_free(struct choices *choices)
         free(choices->cells[i].person);
         free(choices->cells[i].counts);
         free(choices->cells[i].equals);
+        free(choices->cells[i].planned);
         free(choices->cells[i].toggle);
         free(choices->cells[i].reaction_s);
     }

@@ -63,6 +63,9 @@ struct choice_cell {
     size_t *person;             // index in the sample
     struct stat_person *counts; // without "equal"
     int64_t *equals;            // "equal"
+    // Who was to answer: people whose sessions planned trials of this cell, whatever became of them.
+    size_t planned_count;
+    size_t *planned; // indices in the sample, rising
     // Working arrays, one entry per answer:
     size_t answers;
     size_t toggled;
@@ -70,8 +73,8 @@ struct choice_cell {
     size_t reactions;
 };
 
-// Two levels of a factor that each person saw, compared where at least one of the cells has several answers of
-// a person: shares at level a minus those at level b in cells that are otherwise the same.
+// Two levels of a factor within people (choice_design.h), compared where at least one of the cells has several
+// answers of a person: shares at level a minus those at level b in cells that are otherwise the same.
 struct choice_contrast {
     const char *block, *factor, *a, *b;
     size_t cell_pairs;   // of them the mean
@@ -96,6 +99,7 @@ struct choices {
     struct choice_contrast *contrasts;
     int64_t answers, equal; // in all cells; of them "equal"
     int64_t chosen_first, chosen_a;
+    int64_t first_known;         // answers for an option of which it is known what was shown first
     struct stat_moments toggles; // over all such answers
     double reaction_median_s;
     // Left out, by the first reason that holds:

@@ -187,6 +187,18 @@ void factorial_refusal(const struct factorial *f, char out[512])
              f->refusal);
 }
 
+size_t factorial_untested(const struct factorial *f, char out[256])
+{
+    size_t count = 0;
+    out[0] = '\0';
+    for (size_t j = 0; j < f->factor_count; j++) {
+        size_t used = strlen(out);
+        if (isnan(f->anova.effects[j].p_gg)) // main effects stand first
+            snprintf(out + used, 256 - used, "%s%.60s", count++ ? ", " : "", f->factors[j].name);
+    }
+    return count;
+}
+
 void factorial_effect_name(const struct factorial *f, unsigned factors, const char *cross, char out[256])
 {
     out[0] = '\0';

@@ -79,6 +79,11 @@ void factorial_free(struct factorial_list *list);
 // Why there is no analysis, and what can be said nevertheless.
 void factorial_refusal(const struct factorial *f, char out[512]);
 
+// The names of factors whose own effect has no F, joined by commas: nothing spreads that it could be held
+// against, as where everybody's ratings differ by the same. Such an effect may be perfect; it is not tested.
+// Returns how many.
+size_t factorial_untested(const struct factorial *f, char out[256]);
+
 // "scene x region", for the bits of an effect; `cross` stands between names.
 void factorial_effect_name(const struct factorial *f, unsigned factors, const char *cross, char out[256]);
 

@@ -66,6 +66,42 @@ void figure_word(FILE *data, const char *text)
     fputc('"', data);
 }
 
+void figure_cut(char *text, size_t most)
+{
+    if (strlen(text) <= most)
+        return;
+    while (most && ((unsigned char)text[most] & 0xc0) == 0x80) // within a letter of UTF-8
+        most--;
+    memcpy(text + most, "\u2026", sizeof "\u2026");
+}
+
+void figure_cut_word(FILE *data, const char *text, size_t most)
+{
+    char room[256];
+    snprintf(room, sizeof room - 4, "%s", text);
+    figure_cut(room, most);
+    figure_word(data, room);
+}
+
+static void write_where(FILE *data, bool there, double value)
+{
+    if (there)
+        fprintf(data, "%.6f ", value);
+    else
+        fputs("NaN ", data); // which gnuplot leaves out
+}
+
+void figure_interval(FILE *data, double low, double high, double least, double most)
+{
+    bool any = !isnan(low) && !isnan(high), below = low<least, above = high> most;
+    write_where(data, any, fmax(low, least));
+    write_where(data, any, fmin(high, most));
+    write_where(data, any && !below, low);
+    write_where(data, any && !above, high);
+    write_where(data, any && below, least);
+    write_where(data, any && above, most);
+}
+
 // In the child: only calls that are safe after fork().
 static void become_gnuplot(const char *folder)
 {

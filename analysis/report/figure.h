@@ -40,6 +40,22 @@ bool figure_begin(struct figure *figure, int width, int height, int font_px, cha
 // A quoted word of the data file: what gnuplot could read as more than text is replaced.
 void figure_word(FILE *data, const char *text);
 
+// Cuts between letters what is longer than `most` bytes, and puts "…" there; `text` has room for 4 more.
+void figure_cut(char *text, size_t most);
+
+// The same of a word for the data file; `most` is at most 200.
+void figure_cut_word(FILE *data, const char *text, size_t most);
+enum { FIGURE_LEVEL_LONGEST = 24 }; // bytes of a level's name to the left of a row
+
+// Six columns of the data file: an interval as far as an axis from `least` to `most` shows it, its ends that
+// the axis shows, and its ends that the axis cuts, for FIGURE_CUT_HEAD; NaN where there is none.
+void figure_interval(FILE *data, double low, double high, double least, double most);
+// An interval that goes on beyond the axis ends in an arrow: nobody takes the axis' end for its own.
+#define FIGURE_CUT_HEAD "head filled size screen 0.012,24,60 fixed"
+
+// Where a label says what the upright axis shows: above the left corner. Give it a line at the top.
+#define FIGURE_UPRIGHT "at graph 0, graph 1 left offset -4,0.8 tc rgb '" FIGURE_INK "'"
+
 // Runs gnuplot and removes the folder. *out_svg is freed by the caller. False with a sentence.
 bool figure_end(struct figure *figure, const struct figure_text *text, char **out_svg, char *error,
                 size_t error_size);

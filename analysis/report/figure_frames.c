@@ -16,6 +16,15 @@ size_t figure_frames_rows(const struct frames *frames)
     return rows;
 }
 
+// Whose time is drawn.
+static const char *clock_words(const struct frames *frames)
+{
+    size_t gpu = 0, rows = figure_frames_rows(frames);
+    for (size_t i = 0; i < frames->group_count; i++)
+        gpu += drawn(&frames->groups[i]) && frames->groups[i].gpu.count;
+    return gpu == rows ? "GPU" : gpu == 0 ? "CPU" : "GPU or CPU";
+}
+
 static double write_rows(FILE *data, const struct sample *sample, const struct frames *frames)
 {
     double most = 0;
@@ -42,15 +51,16 @@ bool figure_frames(const struct sample *sample, const struct frames *frames, con
     struct figure figure;
     size_t rows = figure_frames_rows(frames);
     int font = desc->narrow ? 12 : 14;
-    if (!figure_begin(&figure, desc->narrow ? FIGURE_NARROW_PX : FIGURE_WIDE_PX, 60 + 44 * (int)rows, font,
+    if (!figure_begin(&figure, desc->narrow ? FIGURE_NARROW_PX : FIGURE_WIDE_PX, 80 + 44 * (int)rows, font,
                       error, error_size))
         return false;
     double most = fmax(write_rows(figure.data, sample, frames), 0.001);
     fprintf(figure.script,
             "set yrange [%.2f:-0.75]\nset xrange [0:%.6g]\nunset ytics\nset xtics 0,%.6g format '%%g ms'\n"
-            "set lmargin 3\nset rmargin 3\nset tmargin 0.5\nset bmargin 2\n"
+            "set lmargin 3\nset rmargin 3\nset tmargin 0.5\nset bmargin 3\n"
+            "set xlabel '%s time per frame' tc rgb '" FIGURE_INK "' offset 0,0.4\n"
             "set grid xtics lw 0.6 lt 1 lc rgb '#dfe2e8'\n",
-            (double)rows - 0.4, most * 1.04, figure_tic_step(most, desc->narrow ? 5 : 8));
+            (double)rows - 0.4, most * 1.04, figure_tic_step(most, desc->narrow ? 5 : 8), clock_words(frames));
     fputs("plot 'data' using 2:1:($4-$2):(0) with vectors nohead lw 5 lc rgb '" FIGURE_GREEN
           "', '' using 2:1:($3-$2):(0) with vectors nohead lw 5 lc rgb '" FIGURE_GREEN_EDGE
           "', '' using 2:1 with points pt 7 ps 1.2 lc rgb '" FIGURE_ORANGE

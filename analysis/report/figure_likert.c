@@ -60,10 +60,8 @@ static double write_row(FILE *segments, FILE *words, size_t row, const double *c
             fprintf(segments, "%zu %.4f %.4f %zu\n", row, x, x + counts[k] * percent, k);
         x += counts[k] * percent;
     }
-    char text[40];
-    snprintf(text, sizeof text, "%.39s", level);
     fprintf(words, "%zu %.4f %.4f \"%.0f %%\" \"%.0f %%\" ", row, low, high, below * percent, above * percent);
-    figure_word(words, text);
+    figure_cut_word(words, level, FIGURE_LEVEL_LONGEST);
     fputc('\n', words);
     return fmax(-low, high);
 }
@@ -101,17 +99,15 @@ static double write_data(FILE *data, const struct factorial *f, size_t *rows, si
         }
     }
     *rows = row;
-    *widest = *widest < 24 ? *widest : 24;
+    *widest = *widest < FIGURE_LEVEL_LONGEST ? *widest : FIGURE_LEVEL_LONGEST;
     if (!memory || fclose(memory) != 0)
         return (double)NAN;
     fprintf(data, "\n\n%s\n\n", words);
     free(words);
     row = 0;
     for (size_t j = 0; j < f->factor_count; j++) {
-        char name[40];
-        snprintf(name, sizeof name, "%.39s", f->factors[j].name);
         fprintf(data, "%zu ", row);
-        figure_word(data, name);
+        figure_cut_word(data, f->factors[j].name, 40);
         fputc('\n', data);
         row += 1 + f->factors[j].level_count;
     }
@@ -126,7 +122,7 @@ bool figure_likert(const struct factorial *f, const struct figure_desc *desc, ch
     int font = desc->narrow ? 12 : 14;
     for (size_t j = 0; j < f->factor_count; j++)
         rows += f->factors[j].level_count;
-    if (!figure_begin(&figure, desc->narrow ? FIGURE_NARROW_PX : FIGURE_WIDE_PX, 40 + 24 * (int)rows, font,
+    if (!figure_begin(&figure, desc->narrow ? FIGURE_NARROW_PX : FIGURE_WIDE_PX, 60 + 24 * (int)rows, font,
                       error, error_size))
         return false;
     double reach = write_data(figure.data, f, &rows, &widest);
@@ -138,10 +134,12 @@ bool figure_likert(const struct factorial *f, const struct figure_desc *desc, ch
     double edge = reach * (desc->narrow ? 1.6 : 1.22);
     fprintf(figure.script,
             "set yrange [%.1f:-0.7]\nset xrange [%.4f:%.4f]\nunset ytics\nset style fill solid 1 noborder\n"
-            "set xtics ('100 %%%%' -100, '50 %%%%' -50, '0' 0, '50 %%%%' 50, '100 %%%%' 100)\n"
-            "set lmargin %zu\nset rmargin 2\nset tmargin 0.3\nset bmargin 1.8\n"
+            "set xtics ('100 %%%%' -100, '%s' -50, '0' 0, '%s' 50, '100 %%%%' 100)\n"
+            "set lmargin %zu\nset rmargin 2\nset tmargin 0.3\nset bmargin 3\nset xlabel 'share of answers' tc "
+            "rgb '" FIGURE_INK "' offset 0,0.4\n"
             "set grid xtics lw 0.6 lt 1 lc rgb '#dfe2e8'\nplot ",
-            (double)rows - 0.4, -edge, edge, widest + 2);
+            (double)rows - 0.4, -edge, edge, desc->narrow ? "" : "50 %%", desc->narrow ? "" : "50 %%",
+            widest + 2);
     size_t points = points_of(f);
     for (size_t k = 0; k < points; k++)
         fprintf(figure.script,

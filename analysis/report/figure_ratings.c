@@ -2,15 +2,16 @@
 
 #include <string.h>
 
+enum { LONGEST = 22, NARROW_LONGEST = 12 }; // bytes of a mode's name that do not meet the next one
 static const double panel_width = 2.2; // between the first positions of two groups; the two ratings are 1 apart
 
-// The option without parameters is the reference everywhere in this program; else the first one is orange.
+// Orange is the option under test, as in every figure: not `regular`; of two others the first one.
 static const char *colour(const struct sample *sample, const struct rating_group *g, bool second)
 {
-    bool first_plain = sample->conditions[g->first_condition].parameters[0] == '\0';
-    bool second_plain = sample->conditions[g->second_condition].parameters[0] == '\0';
-    bool orange = first_plain == second_plain ? (g->first_condition < g->second_condition) != second
-                                              : (second ? !second_plain : !first_plain);
+    bool first_regular = strcmp(sample->conditions[g->first_condition].mode, "regular") == 0;
+    bool second_regular = strcmp(sample->conditions[g->second_condition].mode, "regular") == 0;
+    bool orange = first_regular == second_regular ? (g->first_condition < g->second_condition) != second
+                                                  : (second ? !second_regular : !first_regular);
     return orange ? FIGURE_ORANGE : FIGURE_BLUE;
 }
 
@@ -31,10 +32,10 @@ static void write_lines(FILE *data, const struct rating_question *q)
     fputs("\n", data);
 }
 
-static void write_option(FILE *data, const struct sample *sample, size_t condition)
+static void write_option(FILE *data, const struct sample *sample, size_t condition, bool narrow)
 {
     fputc(' ', data);
-    figure_word(data, sample->conditions[condition].mode);
+    figure_cut_word(data, sample->conditions[condition].mode, narrow ? NARROW_LONGEST : LONGEST);
 }
 
 // Block 1: the means, with what was rated and when.
@@ -46,11 +47,11 @@ static void write_means(FILE *data, const struct sample *sample, const struct ra
         fprintf(data, "%.3f %.4f %s \"%.1f\" \"first\"", x, group->first_of.mean,
                 strcmp(colour(sample, group, false), FIGURE_ORANGE) == 0 ? "0xe8912d" : "0x2f6da8",
                 group->first_of.mean);
-        write_option(data, sample, group->first_condition);
+        write_option(data, sample, group->first_condition, narrow);
         fprintf(data, " -1\n%.3f %.4f %s \"%.1f\" \"second\"", x + 1, group->second_of.mean,
                 strcmp(colour(sample, group, true), FIGURE_ORANGE) == 0 ? "0xe8912d" : "0x2f6da8",
                 group->second_of.mean);
-        write_option(data, sample, group->second_condition);
+        write_option(data, sample, group->second_condition, narrow);
         fputs(" 1\n\n", data);
     }
     fputs("\n", data);
@@ -73,7 +74,8 @@ bool figure_ratings(const struct sample *sample, const struct rating_question *q
     fprintf(
         figure.script,
         "set xrange [-0.6:%.3f]\nset yrange [%.4f:%.4f]\nunset xtics\nset ytics %.6g,%.6g,%.6g offset 0.5,0\n"
-        "set lmargin 4\nset rmargin 0.5\nset tmargin 0.5\nset bmargin 0\nset grid ytics lw 0.6 lt 1 lc rgb "
+        "set lmargin 5\nset rmargin 0.5\nset tmargin 1.8\nset bmargin 0\nset label 'rating' " FIGURE_UPRIGHT
+        "\nset grid ytics lw 0.6 lt 1 lc rgb "
         "'#dfe2e8'\n",
         panel_width * (double)(q->group_count - 1) + 1.6, q->scale_min - 0.24 * span,
         q->scale_max + 0.12 * span, q->scale_min, span > 12 ? span / 5 : 1, q->scale_max);

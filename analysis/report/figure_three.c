@@ -21,7 +21,7 @@ size_t figure_three_rows(const struct choices *c)
     return rows;
 }
 
-// The cell's words, cut between letters where they are longer than `most` bytes.
+// The cell's words, cut where they are longer than `most` bytes.
 static void words_of(const struct choice_cell *cell, size_t most, char out[WORDS])
 {
     char levels[256];
@@ -29,16 +29,13 @@ static void words_of(const struct choice_cell *cell, size_t most, char out[WORDS
         level_join(cell, 0, cell->level_count, levels);
     else
         snprintf(levels, sizeof levels, "%s", cell->label);
-    size_t length = (size_t)snprintf(out, WORDS, "%.40s%s%s", cell->name_block ? cell->block : "",
-                                     cell->name_block ? ": " : "", levels);
-    if (length <= most)
-        return;
-    while (most && ((unsigned char)out[most] & 0xc0) == 0x80) // within a letter of UTF-8
-        most--;
-    snprintf(out + most, WORDS - most, "\u2026");
+    snprintf(out, WORDS - 4, "%.40s%s%s", cell->name_block ? cell->block : "", cell->name_block ? ": " : "",
+             levels);
+    figure_cut(out, most);
 }
 
-// A row each: place, net preference, interval (NaN where there is none), words, the number as a word.
+// A row each: place, net preference, the columns of its interval, words, the number as a word. So few people's
+// t interval may reach beyond what a net preference can be.
 static bool write_rows(FILE *data, const struct choices *c, size_t most, size_t *out_widest)
 {
     size_t row = 0;
@@ -54,12 +51,8 @@ static bool write_rows(FILE *data, const struct choices *c, size_t most, size_t 
         size_t length = strlen(words);
         *out_widest = length > *out_widest ? length : *out_widest;
         snprintf(number, sizeof number, "%s%.2f", x.net < 0 ? "\u2212" : x.net > 0 ? "+" : "", fabs(x.net));
-        // An interval of shares so small may reach beyond what a net preference can be; it is cut there.
         fprintf(data, "%zu %.6f ", row++, x.net);
-        if (isnan(x.net_ci.low))
-            fputs("NaN NaN ", data);
-        else
-            fprintf(data, "%.6f %.6f ", fmax(-1, x.net_ci.low), fmin(1, x.net_ci.high));
+        figure_interval(data, x.net_ci.low, x.net_ci.high, -1, 1);
         figure_word(data, words);
         fputc(' ', data);
         figure_word(data, number);
@@ -99,9 +92,12 @@ bool figure_three(const struct choices *c, const struct figure_desc *desc, char 
             desc->narrow ? "" : " preferred", desc->narrow ? "" : " option preferred");
     fprintf(figure.script,
             "plot 'data' index 0 using 3:1:($4-$3):(0) with vectors nohead lw 3 lc rgb '" FIGURE_BLUE "'"
+            ", '' index 0 using 7:1:(-0.03):(0) with vectors " FIGURE_CUT_HEAD " lw 1.5 lc rgb '" FIGURE_BLUE
+            "'"
+            ", '' index 0 using 8:1:(0.03):(0) with vectors " FIGURE_CUT_HEAD " lw 1.5 lc rgb '" FIGURE_BLUE "'"
             ", '' index 0 using 2:1 with points pt 7 ps %s lc rgb '" FIGURE_BLUE "'"
-            ", '' index 0 using (-1.03):1:5 with labels right offset -0.6,0 tc rgb '" FIGURE_INK "'"
-            ", '' index 0 using (1.03):1:6 with labels left offset 0.6,0 tc rgb '" FIGURE_INK "'\n",
+            ", '' index 0 using (-1.03):1:9 with labels right offset -1,0 tc rgb '" FIGURE_INK "'"
+            ", '' index 0 using (1.03):1:10 with labels left offset 0.6,0 tc rgb '" FIGURE_INK "'\n",
             desc->narrow ? "0.7" : "0.9");
     return figure_end(&figure, desc->text, out_svg, error, error_size);
 }

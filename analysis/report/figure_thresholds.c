@@ -114,13 +114,14 @@ bool figure_thresholds(const struct threshold_cell *cell, const struct figure_de
     axis_range(cell, &low, &high);
     char parameter[96]; // block 4: what the axis shows
     level_name(cell->parameter, parameter);
-    fprintf(figure.data, "%.9g 6 ", high);
+    fputs("0.5 0 ", figure.data);
     figure_word(figure.data, parameter);
     fprintf(
         figure.script,
         "set xrange [%.9g:%.9g]\nset yrange [-14:104]\nset xtics format '%%g' offset 0,0.3\n"
-        "set ytics 0,25,100 format '%%g %%%%' offset 0.5,0\nset lmargin 6.5\nset rmargin 1.5\nset tmargin 0.5\n"
-        "set bmargin 1.6\n"
+        "set x2range [0:1]\nset y2range [0:1]\nset label '%s' " FIGURE_UPRIGHT "\n"
+        "set ytics 0,25,100 format '%%g %%%%' offset 0.5,0\nset lmargin 6.5\nset rmargin 1.5\nset tmargin 1.8\n"
+        "set bmargin 2.8\n"
         "do for [y=0:100:25] { set arrow from graph 0, first y to graph 1, first y nohead back lw 0.6 "
         "lc rgb (y == 0 ? '" FIGURE_INK "' : '#dfe2e8') }\n"
         "plot 'data' index 3 using (($2+$3)/2):(45):(($3-$2)/2):(55) with boxxyerror fs solid noborder fc "
@@ -129,8 +130,8 @@ bool figure_thresholds(const struct threshold_cell *cell, const struct figure_de
         ", '' index 1 using 1:2 with lines lw 1 lc rgb '" FIGURE_PALE "'"
         ", '' index 0 using 1:2:3 with points pt 7 ps variable lc rgb '" FIGURE_ORANGE "'"
         ", '' index 2 using 1:(-9.5):(0):(7) with vectors nohead lw 2 lc rgb '" FIGURE_BLUE "'"
-        ", '' index 4 using 1:2:3 with labels right offset -0.5,0 tc rgb '" FIGURE_INK "'\n",
-        low, high);
+        ", '' index 4 using 1:2:3 axes x2y2 with labels center offset 0,-2 tc rgb '" FIGURE_INK "'\n",
+        low, high, cell->preference ? "choices for the test option" : "right answers");
     return figure_end(&figure, desc->text, out_svg, error, error_size);
 }
 
@@ -139,13 +140,17 @@ bool figure_adjusted(const struct adjusted_cell *const *cells, size_t count, con
 {
     struct figure figure;
     int font = desc->narrow ? 12 : 15;
+    double low = INFINITY, high = -INFINITY;
+    char parameter[96], range[80] = "";
     if (!figure_begin(&figure, desc->narrow ? FIGURE_NARROW_PX : FIGURE_WIDE_PX, desc->narrow ? 300 : 340, font,
                       error, error_size))
         return false;
-    for (size_t i = 0; i < count; i++) // block 0: people, set off sideways in a fixed pattern
+    for (size_t i = 0; i < count; i++) // block 0: people side by side
         for (size_t j = 0; j < cells[i]->person_count; j++)
-            fprintf(figure.data, "%.4f %.9g\n", (double)i - 0.08 + 0.02 * ((double)(j * 7 % 9) - 4),
-                    cells[i]->people[j].mean);
+            fprintf(figure.data, "%.4f %.9g\n",
+                    (double)i - 0.3 + 0.3 * (double)j / (double)cells[i]->person_count,
+                    cells[i]->people[j].mean),
+                widen(cells[i]->people[j].mean, &low, &high);
     fputs("\n\n", figure.data);
     for (size_t i = 0; i < count; i++) { // block 1: means with intervals
         const struct threshold_mean *m = &cells[i]->over_people;
@@ -154,15 +159,25 @@ bool figure_adjusted(const struct adjusted_cell *const *cells, size_t count, con
                 known ? m->t.ci_high : m->of.mean);
         figure_word(figure.data, cells[i]->words);
         fputc('\n', figure.data);
+        widen(m->t.ci_low, &low, &high);
+        widen(m->t.ci_high, &low, &high);
     }
+    level_name(cells[0]->parameter, parameter); // block 2: what the axis shows
+    fputs("\n\n0 1 ", figure.data);
+    figure_word(figure.data, parameter);
+    if (!(high - low > 1e-9 * fabs(high))) // else gnuplot shows digits that nobody set
+        snprintf(range, sizeof range, "set yrange [%.9g:%.9g]\n", low == 0 ? -1 : low - 0.5 * fabs(low),
+                 low == 0 ? 1 : low + 0.5 * fabs(low));
     fprintf(
         figure.script,
         "set xrange [-0.5:%.3f]\nset offsets 0,0,graph 0.05,graph 0.05\nset ytics format '%%g' offset 0.5,0\n"
-        "set xtics scale 0 offset 0,0.2\nset lmargin 7\nset rmargin 0.5\nset tmargin 0.5\nset bmargin 1.6\n"
+        "set x2range [0:1]\nset y2range [0:1]\n%s"
+        "set xtics scale 0 offset 0,0.2\nset lmargin 7\nset rmargin 0.5\nset tmargin 1.8\nset bmargin 1.6\n"
         "set grid ytics lw 0.6 lt 1 lc rgb '#dfe2e8'\n"
         "plot 'data' index 0 using 1:2 with points pt 7 ps 0.6 lc rgb '" FIGURE_PALE "'"
         ", '' index 1 using ($1+0.12):2:3:4 with yerrorbars pt 7 ps 1.1 lw 2 lc rgb '" FIGURE_ORANGE
-        "', '' index 1 using 1:2:xtic(5) with points pt 7 ps 0.01\n",
-        (double)count - 0.5);
+        "', '' index 1 using 1:2:xtic(5) with points pt 7 ps 0.01"
+        ", '' index 2 using 1:2:3 axes x2y2 with labels left offset -5,0.8 tc rgb '" FIGURE_INK "'\n",
+        (double)count - 0.5, range);
     return figure_end(&figure, desc->text, out_svg, error, error_size);
 }

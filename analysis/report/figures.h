@@ -26,6 +26,8 @@ struct figure_desc {
 // cell, its interval is drawn instead.
 bool figure_choices(const struct choices *choices, const struct figure_desc *desc, char **out_svg, char *error,
                     size_t error_size);
+// "choices for the test option", "right answers", or both: what the bars are percentages of.
+const char *figure_choices_what(const struct choices *choices);
 // Whether the bars bear numbers, those of the table's rows: words are missing, or do not fit.
 bool figure_choices_numbered(const struct choices *choices);
 
@@ -61,8 +63,8 @@ bool figure_thresholds(const struct threshold_cell *cell, const struct figure_de
 bool figure_adjusted(const struct adjusted_cell *const *cells, size_t count, const struct figure_desc *desc,
                      char **out_svg, char *error, size_t error_size);
 
-// Speed against error of a scene's rows, the Pareto front in blue.
-bool figure_bench(const struct bench *bench, const char *scene, const struct figure_desc *desc, char **out_svg,
+// Speed against error of a group's rows, the Pareto front in blue. Of a group with rows that are drawn.
+bool figure_bench(const struct bench *bench, size_t group, const struct figure_desc *desc, char **out_svg,
                   char *error, size_t error_size);
 
 // How many groups figure_frames() would draw: 0 where there is nothing to draw.

@@ -56,64 +56,6 @@ static bool read_checks(struct gaze_report *out, struct sample *sample, char *er
     return true;
 }
 
-// --- people ---
-
-static int eye_order(char eye)
-{
-    return eye == 'l' ? 0 : eye == 'r' ? 1 : 2;
-}
-
-static int by_session(const void *x, const void *y)
-{
-    const struct gaze_record *a = x, *b = y;
-    if (a->session != b->session)
-        return a->session < b->session ? -1 : 1;
-    return eye_order(a->eye) - eye_order(b->eye);
-}
-
-static int by_person(const void *x, const void *y)
-{
-    const struct gaze_record *a = x, *b = y;
-    if (a->person != b->person)
-        return a->person < b->person ? -1 : 1;
-    return eye_order(a->eye) - eye_order(b->eye);
-}
-
-static struct gaze_record *person_record(struct gaze_report *out, const struct gaze_record *of)
-{
-    for (size_t i = 0; i < out->person_count; i++)
-        if (out->people[i].person == of->person && out->people[i].eye == of->eye)
-            return &out->people[i];
-    if (!sample_grow(&out->people, out->person_count, sizeof out->people[0]))
-        return NULL;
-    struct gaze_record *record = &out->people[out->person_count];
-    *record = (struct gaze_record){.person = of->person, .session = SAMPLE_NONE, .eye = of->eye};
-    if (!gaze_record_init(record))
-        return NULL;
-    out->person_count++;
-    return record;
-}
-
-static bool join_people(struct gaze_report *out)
-{
-    for (size_t i = 0; i < out->record_count; i++) {
-        struct gaze_record *record = &out->records[i], *person = person_record(out, record);
-        if (!person || !gaze_record_join(person, record))
-            return false;
-        gaze_record_close(record, &out->options);
-        person->missing_before += record->missing; // each sitting's at its own rate
-    }
-    for (size_t i = 0; i < out->person_count; i++) {
-        gaze_record_close(&out->people[i], &out->options);
-        out->people[i].missing = out->people[i].missing_before;
-    }
-    if (out->record_count > 1)
-        qsort(out->records, out->record_count, sizeof out->records[0], by_session);
-    if (out->person_count > 1)
-        qsort(out->people, out->person_count, sizeof out->people[0], by_person);
-    return true;
-}
-
 // --- the whole ---
 
 // The other thread writes to `latencies` only, and reads of the sample what the first does not change.
@@ -148,7 +90,7 @@ bool gaze_load(struct gaze_report *out, struct sample *sample, const struct gaze
     if (ok && !uses.ok)
         snprintf(error, error_size, "%s", uses.error);
     ok = ok && uses.ok;
-    if (ok && !join_people(out)) {
+    if (ok && !gaze_join_people(out, sample)) {
         snprintf(error, error_size, "not enough memory");
         ok = false;
     }
@@ -157,6 +99,26 @@ bool gaze_load(struct gaze_report *out, struct sample *sample, const struct gaze
     else
         gaze_free(out);
     return ok;
+}
+
+int64_t gaze_flat_samples(const struct gaze_report *report)
+{
+    int64_t flat = 0;
+    for (size_t i = 0; i < report->person_count; i++)
+        for (size_t j = 0; j < report->people[i].target_count; j++)
+            flat += report->people[i].targets[j].flat;
+    return flat;
+}
+
+int64_t gaze_lost_frames(const struct gaze_report *report, int64_t *out_all)
+{
+    int64_t lost = 0;
+    *out_all = 0;
+    for (size_t i = 0; i < report->latency_count; i++) {
+        lost += report->latencies[i].lost;
+        *out_all += report->latencies[i].lost + report->latencies[i].frames;
+    }
+    return lost;
 }
 
 void gaze_free(struct gaze_report *report)
@@ -169,6 +131,8 @@ void gaze_free(struct gaze_report *report)
         gaze_bins_finish(&report->latencies[i].age);
         gaze_bins_finish(&report->latencies[i].to_light);
     }
+    for (size_t i = 0; i < report->silent_count; i++)
+        gaze_bins_finish(&report->silent[i].time);
     free(report->records);
     free(report->people);
     free(report->latencies);

@@ -7,12 +7,17 @@
 // Data loss in two parts: samples that came and are not valid, of those that came; and samples that did not
 // come, of those that were due at the nominal rate: between two samples of a trial, from its start to the first
 // and from the last to its end, and throughout trials without any; right to one sample at each end of a
-// trial.
+// trial. A sitting whose own rate cannot be measured, as one without any sample, has that of the person's
+// others.
 //
-// Distance to the fixation target (Weier et al. 2016, section 4.2.2): of valid samples within `region` (10.3
-// degrees left and right, 11.68 up and down there: what their tracker's calibration covers), from where the
-// target of the frame on the display at the sample's arrival was. Of trials that are done, and neither practice
-// nor excluded.
+// The target is where the frame on the display at the sample's arrival had it, in trials that are done, and
+// neither practice nor excluded. It stands at a depth, and each eye is beside the middle that the frame's
+// direction is from, so that one eye's sample is compared with where that eye sees it: by the frame's distance
+// and the session's interpupillary distance, as the program's own fovea on a target. Where a file does not have
+// these, one eye's distance is not estimable. Accuracy is the mean distance of all valid samples from a target
+// at rest, saccades and looks elsewhere included. Distance as in Weier et al. 2016, section 4.2.2, leaves out
+// samples outside `region` (10.3 degrees left and right, 11.68 up and down there: what their tracker's
+// calibration covers).
 //
 // Does not: know the tracker's own delay (its clock is not ours), or average the two eyes.
 #ifndef ANALYSIS_REPORT_GAZE_H
@@ -42,13 +47,14 @@ struct gaze_options {
 struct gaze_options gaze_options(enum gaze_method method);
 
 struct gaze_target {
-    const char *fixation;      // as the trial names it; owned by the sample
-    int64_t samples;           // compared
-    int64_t outside;           // of the region
-    int64_t unknown;           // no frame with a target was on the display
-    struct gaze_spread offset; // gaze less target
-    struct gaze_running distance;
-    struct gaze_bins distances; // owned
+    const char *fixation;         // as the trial names it; owned by the sample
+    int64_t unknown;              // no frame with a target was on the display
+    int64_t flat;                 // of one eye: how far away the target was, or where the eye is, is not known
+    struct gaze_spread offset;    // gaze less target, of all others
+    struct gaze_running error;    // degrees between the two
+    int64_t samples, outside;     // of these, within the region and not
+    struct gaze_running distance; // degrees between the two, within the region
+    struct gaze_bins distances;   // owned
 };
 
 struct gaze_record {
@@ -60,12 +66,14 @@ struct gaze_record {
     struct gaze_bins edges;             // ms without a sample at the ends of trials; owned
     size_t target_count;
     struct gaze_target targets[GAZE_TARGETS];
-    double rate_hz, nominal_hz;              // measured; NaN where it is not
+    double rate_hz;                          // measured; NaN where it is not, or where sittings differ
+    double slowest_hz, fastest_hz;           // of a person's sittings; NaN where none is measured
+    double nominal_hz;                       // at which samples are due; NaN where it is not known
     double missing;                          // samples that did not come; NaN where the rate is not known
-    double missing_before;                   // of a person, while the sittings are added up
-    size_t saccade_count;                    // complete ones; of people only
+    size_t saccade_count;                    // complete ones; a person's only of sittings with known peaks
     double *amplitude, *peak;                // owned
-    struct stat_main_sequence main_sequence; // of people only
+    double span_ms, span_hz;                 // that a peak is taken over, at which rate; NaN: not known
+    struct stat_main_sequence main_sequence; // of people only; NaN where the span is too long
 };
 
 struct gaze_latency { // of one session
@@ -83,6 +91,11 @@ struct gaze_check { // a point of an independent check of the tracker
     bool passed;
 };
 
+struct gaze_silent { // a session with a tracker and no sample in any trial
+    size_t session;
+    struct gaze_bins time; // ms of its trials; owned
+};
+
 struct gaze_report {
     struct gaze_options options;
     size_t record_count; // of sessions, then eyes
@@ -94,7 +107,7 @@ struct gaze_report {
     size_t check_count;
     struct gaze_check *checks;
     size_t silent_count;
-    size_t *silent; // sessions with a tracker and no sample in any trial
+    struct gaze_silent *silent;
 };
 
 // Two passes over each file at once, on two threads: gaze, and frames. Memory grows with people, trials and
@@ -105,9 +118,25 @@ void gaze_free(struct gaze_report *report);
 
 // "left", "right", "both".
 const char *gaze_eye_words(char eye);
-// The kind of target where the eyes rest, whose mean distance is the accuracy; NULL where none was compared.
+// The kind of target where the eyes rest, whose mean error is the accuracy; NULL where none was compared.
 const struct gaze_target *gaze_accuracy(const struct gaze_record *record);
 // Samples due: those that came and those that did not.
 double gaze_due(const struct gaze_record *record);
+// One eye's samples on targets of unknown depth, of all people.
+int64_t gaze_flat_samples(const struct gaze_report *report);
+// Frames that should follow the gaze and had none, of all sessions, and all frames that should.
+int64_t gaze_lost_frames(const struct gaze_report *report, int64_t *out_all);
+
+// What is measured of saccades but cannot be estimated at the tracker's rate.
+enum { GAZE_REASON_SIZE = 96, GAZE_WORDS_SIZE = 640 };
+enum gaze_part { GAZE_VMAX, GAZE_C, GAZE_POWER };
+// Why a person's part of the main sequence is not estimable; false where it is.
+bool gaze_sequence_problem(const struct gaze_record *record, enum gaze_part part, char out[GAZE_REASON_SIZE]);
+// All of them in one line, "" where every part is.
+void gaze_sequence_remark(const struct gaze_record *record, char out[GAZE_WORDS_SIZE]);
+// What a peak is, at which rates and over which time, and how wrong the fits to it may be.
+void gaze_sequence_words(const struct gaze_report *report, char out[GAZE_WORDS_SIZE]);
+// "250.0"; "60.0 to 250.0" where sittings differ; "" where it cannot be measured.
+void gaze_rate_words(const struct gaze_record *record, char out[GAZE_REASON_SIZE]);
 
 #endif

@@ -75,8 +75,9 @@ static void over_sequences(struct gaze_over *out, const struct gaze_report *repo
             size_t count = 0;
             for (size_t i = 0; i < report->person_count; i++) {
                 const struct stat_main_sequence *fit = &report->people[i].main_sequence;
-                if (report->people[i].eye == s.eye && !fit->problem)
-                    values[count++] = which ? fit->c.value : fit->vmax.value;
+                double value = which ? fit->c.value : fit->vmax.value;
+                if (report->people[i].eye == s.eye && isfinite(value))
+                    values[count++] = value;
             }
             *(which ? &s.c : &s.vmax) = stat_moments(values, count);
             *(which ? &s.c_t : &s.vmax_t) = stat_ttest_one_sample(values, count, &options);

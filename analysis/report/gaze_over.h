@@ -18,7 +18,7 @@ struct gaze_over_target {
 
 struct gaze_over_sequence {
     char eye;
-    struct stat_moments vmax, c; // of people whose own are estimable
+    struct stat_moments vmax, c; // of people whose own are estimable; fewer may have a c
     struct stat_ttest vmax_t, c_t;
 };
 

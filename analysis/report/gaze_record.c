@@ -45,21 +45,32 @@ struct gaze_target *gaze_record_target(struct gaze_record *record, const char *f
     return target;
 }
 
+bool gaze_silent_init(struct gaze_silent *silent, size_t session)
+{
+    *silent = (struct gaze_silent){.session = session};
+    return gaze_bins_init(&silent->time, EDGE_MS, EDGE_BINS);
+}
+
+// At an edge a sample is due once an interval has passed, and no sample ends it.
+static double missing_at_edges(const struct gaze_bins *edges, double due_ms)
+{
+    double missing = 0;
+    for (size_t i = 0; i < edges->count + 1; i++)
+        if (edges->values[i])
+            missing += floor(edges->sums[i] / (double)edges->values[i] / due_ms) * (double)edges->values[i];
+    return missing;
+}
+
 void gaze_record_close(struct gaze_record *record, const struct gaze_options *options)
 {
-    double interval_ms = gaze_quality_interval(&record->quality);
-    record->rate_hz = 1000 / interval_ms;
-    record->nominal_hz = options->rate_hz > 0 ? options->rate_hz : record->rate_hz;
     double due_ms = 1000 / record->nominal_hz;
-    record->missing = gaze_bins_missing(&record->quality.interval, due_ms);
-    // At an edge a sample is due once an interval has passed, and no sample ends it.
-    for (size_t i = 0; i < record->edges.count + 1; i++)
-        if (record->edges.values[i])
-            record->missing += floor(record->edges.sums[i] / (double)record->edges.values[i] / due_ms) *
-                               (double)record->edges.values[i];
-    if (record->session == SAMPLE_NONE)
-        record->main_sequence =
-            stat_main_sequence(record->amplitude, record->peak, record->saccade_count, options->conf);
+    record->missing = due_ms > 0 ? gaze_bins_missing(&record->quality.interval, due_ms) +
+                                       missing_at_edges(&record->edges, due_ms)
+                                 : (double)NAN;
+    record->span_hz = record->nominal_hz;
+    record->span_ms = gaze_velocity_span_ms(due_ms, options->rules.peak_ms);
+    if (!(record->span_ms <= GAZE_VMAX_SPAN_MS))
+        record->quality.peak_deg_s = (struct gaze_running){.n = 0};
 }
 
 static bool join_target(struct gaze_record *record, const struct gaze_target *from)
@@ -70,7 +81,9 @@ static bool join_target(struct gaze_record *record, const struct gaze_target *fr
     to->samples += from->samples;
     to->outside += from->outside;
     to->unknown += from->unknown;
+    to->flat += from->flat;
     gaze_spread_join(&to->offset, &from->offset);
+    gaze_running_join(&to->error, &from->error);
     gaze_running_join(&to->distance, &from->distance);
     gaze_bins_join(&to->distances, &from->distances);
     return true;
@@ -87,18 +100,32 @@ static bool append(double **to, size_t count, const double *from, size_t more)
     return true;
 }
 
+// The longest span of sittings whose peaks tell something; where none does, the shortest.
+static void join_span(struct gaze_record *to, const struct gaze_record *from)
+{
+    bool ours = to->span_ms <= GAZE_VMAX_SPAN_MS, theirs = from->span_ms <= GAZE_VMAX_SPAN_MS;
+    bool worse = theirs ? from->span_ms > to->span_ms : from->span_ms < to->span_ms;
+    if (isnan(to->span_ms) || (theirs && !ours) || (theirs == ours && worse)) {
+        to->span_ms = from->span_ms;
+        to->span_hz = from->span_hz;
+    }
+}
+
 bool gaze_record_join(struct gaze_record *to, const struct gaze_record *from)
 {
+    bool peaks = from->span_ms <= GAZE_VMAX_SPAN_MS;
+    size_t saccades = peaks ? from->saccade_count : 0;
+    join_span(to, from);
     gaze_quality_join(&to->quality, &from->quality);
     gaze_bins_join(&to->edges, &from->edges);
     to->received += from->received;
     to->received_invalid += from->received_invalid;
     to->between += from->between;
     to->superseded += from->superseded;
-    if (!append(&to->amplitude, to->saccade_count, from->amplitude, from->saccade_count) ||
-        !append(&to->peak, to->saccade_count, from->peak, from->saccade_count))
+    if (!append(&to->amplitude, to->saccade_count, from->amplitude, saccades) ||
+        !append(&to->peak, to->saccade_count, from->peak, saccades))
         return false;
-    to->saccade_count += from->saccade_count;
+    to->saccade_count += saccades;
     for (size_t i = 0; i < from->target_count; i++)
         if (!join_target(to, &from->targets[i]))
             return false;
@@ -114,7 +141,7 @@ const char *gaze_eye_words(char eye)
 const struct gaze_target *gaze_accuracy(const struct gaze_record *record)
 {
     for (size_t i = 0; i < record->target_count; i++)
-        if (strcmp(record->targets[i].fixation, "moving") != 0 && record->targets[i].samples)
+        if (strcmp(record->targets[i].fixation, "moving") != 0 && record->targets[i].error.n)
             return &record->targets[i];
     return NULL;
 }

@@ -1,27 +1,19 @@
 // One file's gaze, sample by sample, to the records of its sessions and eyes.
 #include "analysis/report/gaze_private.h"
 
-#include "studies/store/gaze.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-// A target stays where its frame had it until the next frame; a display slower than 10 Hz shows no target.
-#define TARGET_NS 100000000
 enum { EYES = 3 };
 
 struct trial {
     int64_t id, session_id, segment_id, started_ns, ended_ns;
     const char *fixation; // owned by the sample; NULL where the distance to a target is not asked for
-    bool tracker;
+    bool tracker, moving; // the target moves
+    double ipd_m;
     unsigned seen; // eyes that had a sample, as bits
-};
-
-struct target_place {
-    int64_t segment_id, shown_ns;
-    double x_deg, y_deg;
 };
 
 // What one eye is at: its record, its trial, its last sample.
@@ -41,9 +33,8 @@ struct reading {
     struct trial *trials;
     size_t trial_count;
     struct eye eyes[EYES];
-    struct trial *current;        // the last sample's
-    struct target_place *targets; // of that trial
-    size_t target_count, target_at;
+    struct trial *current;     // the last sample's
+    struct gaze_places places; // of that trial's target
     bool no_memory;
 };
 
@@ -53,8 +44,14 @@ static bool add_trial(void *user, const struct store_gaze_trial *row)
     if (!sample_grow(&r->trials, r->trial_count, sizeof r->trials[0]))
         return !(r->no_memory = true);
     struct trial *trial = &r->trials[r->trial_count++];
-    *trial = (struct trial){
-        row->id, row->session_id, row->segment_id, row->started_ns, row->ended_ns, NULL, row->tracker, 0};
+    *trial = (struct trial){.id = row->id,
+                            .session_id = row->session_id,
+                            .segment_id = row->segment_id,
+                            .started_ns = row->started_ns,
+                            .ended_ns = row->ended_ns,
+                            .tracker = row->tracker,
+                            .moving = strcmp(row->fixation, "moving") == 0,
+                            .ipd_m = row->ipd_m};
     if (row->fixation[0] && strcmp(row->fixation, "free") != 0 && row->done && !row->practice &&
         !sample_trial_excluded(r->sample, r->file, row->id)) {
         trial->fixation = sample_keep(r->sample, row->fixation);
@@ -69,26 +66,13 @@ static int by_id(const void *x, const void *y)
     return (a > b) - (a < b);
 }
 
-static bool add_target(void *user, const struct store_target_row *row)
-{
-    struct reading *r = user;
-    if (!isfinite(row->x_deg) || !isfinite(row->y_deg))
-        return true;
-    if (!sample_grow(&r->targets, r->target_count, sizeof r->targets[0]))
-        return !(r->no_memory = true);
-    r->targets[r->target_count++] =
-        (struct target_place){row->segment_id, row->shown_ns, row->x_deg, row->y_deg};
-    return true;
-}
-
 static bool change_trial(struct reading *r, int64_t trial_id)
 {
     r->current = trial_id && r->trial_count
                      ? bsearch(&trial_id, r->trials, r->trial_count, sizeof r->trials[0], by_id)
                      : NULL;
-    r->target_count = r->target_at = 0;
     return !r->current || !r->current->fixation ||
-           store_read_targets(r->sample->files[r->file], trial_id, add_target, r);
+           gaze_places_read(&r->places, r->sample->files[r->file], trial_id);
 }
 
 static struct gaze_record *record_of(const struct reading *r, const struct eye *eye)
@@ -111,6 +95,7 @@ static void enter_trial(struct reading *r, struct eye *eye, int64_t host_ns)
     if (eye->trial->started_ns >= 0)
         gaze_bins_add(&record_of(r, eye)->edges, fmax(0, (double)(host_ns - eye->trial->started_ns) / 1e6));
     eye->trial->seen |= 1U << (eye - r->eyes);
+    eye->track.moving = eye->trial->moving;
 }
 
 static bool change_session(struct reading *r, struct eye *eye, int64_t session_id)
@@ -142,41 +127,12 @@ static bool change_session(struct reading *r, struct eye *eye, int64_t session_i
     return true;
 }
 
-static const struct target_place *target_at(struct reading *r, const struct store_gaze_sample *row)
-{
-    while (r->target_at > 0 && r->targets[r->target_at - 1].shown_ns > row->host_ns)
-        r->target_at--;
-    while (r->target_at < r->target_count && (r->targets[r->target_at].segment_id != row->segment_id ||
-                                              r->targets[r->target_at].shown_ns <= row->host_ns))
-        r->target_at++;
-    const struct target_place *last = r->target_at ? &r->targets[r->target_at - 1] : NULL;
-    bool known = last && last->segment_id == row->segment_id && row->host_ns - last->shown_ns <= TARGET_NS;
-    return known ? last : NULL;
-}
-
 static bool compare(struct reading *r, struct eye *eye, const struct store_gaze_sample *row)
 {
-    const struct gaze_options *options = &r->out->options;
     struct gaze_target *target = gaze_record_target(record_of(r, eye), eye->trial->fixation);
-    const struct target_place *place = target_at(r, row);
     if (!target)
         return !(r->no_memory = true);
-    if (!place) {
-        target->unknown++;
-        return true;
-    }
-    if (fabs(row->x_deg) > options->region_x_deg || fabs(row->y_deg) > options->region_y_deg) {
-        target->outside++;
-        return true;
-    }
-    struct gaze_point gaze = gaze_point(0, row->x_deg, row->y_deg),
-                      at = gaze_point(0, place->x_deg, place->y_deg);
-    double distance = gaze_angle_deg(&gaze, &at);
-    target->samples++;
-    gaze_spread_add(&target->offset, (row->x_deg - place->x_deg) * cos(place->y_deg * M_PI / 180),
-                    row->y_deg - place->y_deg);
-    gaze_running_add(&target->distance, distance);
-    gaze_bins_add(&target->distances, distance);
+    gaze_compare(&r->places, &r->out->options, eye->trial->ipd_m, row, target);
     return true;
 }
 
@@ -243,30 +199,47 @@ static void hear(void *user, const struct gaze_event *event, const struct gaze_p
         options->each(options->user, record_of(r, eye)->session, eye->trial->id, eye->name, event);
 }
 
-// Trials that the tracker missed from start to end: nothing else would show them.
-static bool missed_trials(struct reading *r)
+static bool add_silence(struct reading *r, size_t session, double ms)
 {
     struct gaze_report *out = r->out;
+    size_t i = 0;
+    while (i < out->silent_count && out->silent[i].session != session)
+        i++;
+    if (i == out->silent_count) {
+        if (!sample_grow(&out->silent, i, sizeof out->silent[0]) || !gaze_silent_init(&out->silent[i], session))
+            return !(r->no_memory = true);
+        out->silent_count++;
+    }
+    gaze_bins_add(&out->silent[i].time, ms);
+    return true;
+}
+
+// Trials that the tracker missed from start to end: nothing else would show them.
+static bool missed_trial(struct reading *r, const struct trial *t, size_t session)
+{
+    double ms = (double)(t->ended_ns - t->started_ns) / 1e6;
+    bool heard = false;
+    for (size_t i = 0; i < r->out->record_count; i++) {
+        struct gaze_record *record = &r->out->records[i];
+        if (record->session != session || record->quality.samples == 0)
+            continue;
+        heard = true;
+        if (!(t->seen & (record->eye == 'l' ? 1U : record->eye == 'r' ? 2U : 4U)))
+            gaze_bins_add(&record->edges, ms);
+    }
+    return heard || add_silence(r, session, ms);
+}
+
+static bool missed_trials(struct reading *r)
+{
     for (size_t i = 0; i < r->trial_count; i++) {
         const struct trial *t = &r->trials[i];
-        size_t session =
-            t->tracker && t->ended_ns > t->started_ns && t->started_ns >= 0 && t->seen != (1U << EYES) - 1
-                ? sample_find_session(r->sample, r->file, t->session_id)
-                : SAMPLE_NONE;
-        bool known = session == SAMPLE_NONE;
-        for (size_t j = 0; j < out->record_count && session != SAMPLE_NONE; j++) {
-            if (out->records[j].session != session)
-                continue;
-            char eye = out->records[j].eye;
-            known = true;
-            if (!(t->seen & (eye == 'l' ? 1U : eye == 'r' ? 2U : 4U)))
-                gaze_bins_add(&out->records[j].edges, (double)(t->ended_ns - t->started_ns) / 1e6);
-        }
-        if (known || (out->silent_count && out->silent[out->silent_count - 1] == session))
+        bool all = t->seen == (1U << EYES) - 1;
+        if (!t->tracker || t->ended_ns <= t->started_ns || t->started_ns < 0 || all)
             continue;
-        if (!sample_grow(&out->silent, out->silent_count, sizeof out->silent[0]))
-            return !(r->no_memory = true);
-        out->silent[out->silent_count++] = session;
+        size_t session = sample_find_session(r->sample, r->file, t->session_id);
+        if (session != SAMPLE_NONE && !missed_trial(r, t, session))
+            return false;
     }
     return true;
 }
@@ -300,8 +273,9 @@ bool gaze_read_samples(struct gaze_report *out, struct sample *sample, size_t fi
     bool ok = read_file(&r);
     if (!ok)
         snprintf(error, error_size, "%s",
-                 r.no_memory ? "not enough memory" : store_reader_error(sample->files[file]));
+                 r.no_memory || r.places.no_memory ? "not enough memory"
+                                                   : store_reader_error(sample->files[file]));
     free(r.trials);
-    free(r.targets);
+    gaze_places_finish(&r.places);
     return ok;
 }

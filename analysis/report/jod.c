@@ -5,10 +5,19 @@
 #include <stdlib.h>
 #include <string.h>
 
+// How many trials of a block had an option as their reference, whatever the rules take out.
+struct vote {
+    const char *block;
+    size_t condition;
+    int64_t trials;
+};
+
 struct filling {
     struct jod *jod;
     struct sample *sample;
     size_t file;
+    struct vote *votes; // in the order of the data
+    size_t vote_count;
 };
 
 static struct jod_block *find_block(struct filling *f, const char *name)
@@ -36,6 +45,28 @@ static size_t find_option(struct jod_block *block, size_t condition)
     return block->option_count++;
 }
 
+// The zero of the scale must not move with the rules: two scales with different zeros cannot be compared. So
+// excluded answers have a say in what the reference is. False where memory ran out.
+static bool vote(struct filling *f, const struct store_trial_row *row)
+{
+    size_t test = sample_find_condition(f->sample, f->file, row->test_id);
+    size_t reference = sample_find_condition(f->sample, f->file, row->reference_id), i = 0;
+    if (strcmp(row->status, "done") != 0 || row->correct >= 0 || test == reference ||
+        (row->chosen != 't' && row->chosen != 'r') || test == SAMPLE_NONE || reference == SAMPLE_NONE)
+        return true;
+    while (i < f->vote_count &&
+           (f->votes[i].condition != reference || strcmp(f->votes[i].block, row->block) != 0))
+        i++;
+    if (i == f->vote_count) {
+        struct vote vote = {.block = sample_keep(f->sample, row->block), .condition = reference};
+        if (!vote.block || !sample_grow(&f->votes, f->vote_count, sizeof f->votes[0]))
+            return false;
+        f->votes[f->vote_count++] = vote;
+    }
+    f->votes[i].trials++;
+    return true;
+}
+
 // Counts what is left out; true for an answer to count.
 static bool counts(struct filling *f, const struct store_trial_row *row)
 {
@@ -53,9 +84,13 @@ static bool counts(struct filling *f, const struct store_trial_row *row)
 static bool add_trial(void *user, const struct store_trial_row *row)
 {
     struct filling *f = user;
-    size_t session = sample_find_session(f->sample, f->file, row->session_id);
+    size_t session = sample_any_session(f->sample, f->file, row->session_id);
     bool pair = strcmp(row->kind, "toggle") == 0 || strcmp(row->kind, "sequential") == 0;
-    if (row->choice_id == 0 || session == SAMPLE_NONE || !pair || !counts(f, row))
+    if (row->choice_id == 0 || session == SAMPLE_NONE || !pair)
+        return true;
+    if (!vote(f, row))
+        return false;
+    if (f->sample->sessions[session].excluded || !counts(f, row))
         return true;
     struct jod_block *block = find_block(f, row->block);
     if (!block)
@@ -76,7 +111,6 @@ static bool add_trial(void *user, const struct store_trial_row *row)
         (struct stat_preference){.person = f->sample->sessions[session].person,
                                  .winner = row->chosen == 't' ? test : reference,
                                  .loser = row->chosen == 't' ? reference : test};
-    block->scores[reference].n++; // how often it was the reference, until the scale is made
     return true;
 }
 
@@ -110,12 +144,25 @@ static void set_order(struct jod_block *block, const struct sample *sample)
     }
 }
 
+// Of equally many votes the first: the order of the data does not depend on the rules either. An option that no
+// answer is left of is the reference nevertheless, and nothing is then estimable.
+static void set_reference(struct jod_block *block, const struct filling *f)
+{
+    const struct vote *best = NULL;
+    for (size_t i = 0; i < f->vote_count; i++) {
+        const struct vote *vote = &f->votes[i];
+        bool room = block->option_count < STAT_JOD_OPTIONS;
+        for (size_t k = 0; k < block->option_count && !room; k++)
+            room = block->options[k] == vote->condition;
+        if (room && strcmp(vote->block, block->block) == 0 && (!best || vote->trials > best->trials))
+            best = vote;
+    }
+    block->reference = best ? find_option(block, best->condition) : 0;
+}
+
 static bool scale(struct jod_block *block, const struct sample *sample, double conf, size_t replicates,
                   uint64_t seed)
 {
-    for (size_t i = 1; i < block->option_count; i++)
-        if (block->scores[i].n > block->scores[block->reference].n)
-            block->reference = i;
     bool ok = set_people(block);
     set_order(block, sample);
     return ok && stat_jod_scale(block->answers, block->answer_count,
@@ -130,22 +177,26 @@ static bool scale(struct jod_block *block, const struct sample *sample, double c
 bool jod_load(struct jod *out, struct sample *sample, double conf, size_t replicates, uint64_t seed,
               char *error, size_t error_size)
 {
+    struct filling f = {.jod = out, .sample = sample};
     *out = (struct jod){.conf = conf, .replicates = replicates};
     bool ok = true;
     snprintf(error, error_size, "not enough memory");
-    for (size_t i = 0; ok && i < sample->file_count; i++) {
-        struct filling f = {out, sample, i};
-        ok = store_read_trials(sample->files[i], add_trial, &f);
-        if (!ok && store_reader_error(sample->files[i])[0])
-            snprintf(error, error_size, "%s", store_reader_error(sample->files[i]));
+    for (; ok && f.file < sample->file_count; f.file++) {
+        struct store_reader *reader = sample->files[f.file];
+        ok = store_read_trials(reader, add_trial, &f);
+        if (!ok && store_reader_error(reader)[0])
+            snprintf(error, error_size, "%s", store_reader_error(reader));
     }
     size_t kept = 0; // blocks in which something was compared
     for (size_t i = 0; ok && i < out->block_count; i++)
         if (out->blocks[i].answer_count > 0)
             out->blocks[kept++] = out->blocks[i];
     out->block_count = ok ? kept : out->block_count;
-    for (size_t i = 0; ok && i < out->block_count; i++)
+    for (size_t i = 0; ok && i < out->block_count; i++) {
+        set_reference(&out->blocks[i], &f);
         ok = scale(&out->blocks[i], sample, conf, replicates, seed);
+    }
+    free(f.votes);
     if (ok)
         error[0] = '\0';
     else

@@ -2,8 +2,9 @@
 //
 // One scale per block. Counted are answers of toggle and sequential trials that are done and not excluded,
 // whose question has no right answer. "Equal" is counted apart and is no comparison; so is a choice between an
-// option and itself. The reference is the option that most trials of the block had as theirs. Scenes and levels
-// that do not change an option are put together.
+// option and itself. The reference is the option that most such trials of the block had as theirs, those that
+// rules take out among them, so that scales under different rules have one zero; of equally many that of the
+// trial read first. Scenes and levels that do not change an option are put together.
 #ifndef ANALYSIS_REPORT_JOD_H
 #define ANALYSIS_REPORT_JOD_H
 

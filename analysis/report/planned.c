@@ -1,10 +1,7 @@
 #include "analysis/report/planned_data.h"
 
 #include "analysis/stats/multiple.h"
-#include "analysis/stats/people_equivalence.h"
-#include "analysis/stats/signflip.h"
 
-#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,8 +13,15 @@ struct planned_row *planned_row_add(struct planned *out, size_t plan)
     if (!sample_grow(&out->rows, out->row_count, sizeof out->rows[0]))
         return NULL;
     struct planned_row *row = &out->rows[out->row_count++];
-    *row = (struct planned_row){
-        .plan = plan, .estimate = none, .low = none, .high = none, .unit = "", .p_value = none, .holm = none};
+    *row = (struct planned_row){.plan = plan,
+                                .estimate = none,
+                                .low = none,
+                                .high = none,
+                                .conf = out->conf,
+                                .margin = none,
+                                .unit = "",
+                                .p_value = none,
+                                .holm = none};
     return row;
 }
 
@@ -35,70 +39,6 @@ void planned_row_t(struct planned_row *row, const struct stat_ttest *t, const ch
         snprintf(row->note, sizeof row->note, "%s",
                  row->people < 2 ? "one person alone has no interval"
                                  : "no spread, or one person alone: no interval");
-}
-
-// Each person's answers in the cells of a group.
-static void sum_people(const struct planned_data *data, const struct planned_group *group,
-                       struct stat_person *people)
-{
-    for (size_t p = 0; p < data->sample->person_count; p++) {
-        people[p] = (struct stat_person){0, 0};
-        for (size_t i = 0; i < group->cell_count; i++) {
-            const struct planned_cell *cell = &data->cells[group->cells[i]];
-            people[p].k += (int64_t)cell->sum[p];
-            people[p].n += cell->count[p];
-        }
-    }
-}
-
-static void write_equivalence(struct planned_row *row, const struct stat_equivalence *e, double margin,
-                              double alpha)
-{
-    static const char *const verdicts[] = {[STAT_UNDECIDED] = "not shown, nor is a difference",
-                                           [STAT_DIFFERENT] = "not shown",
-                                           [STAT_WITHIN] = "shown",
-                                           [STAT_DIFFERENT_WITHIN] = "shown, beside a difference"};
-    const char *before = row->note[0] ? "; " : "";
-    size_t used = strlen(row->note), room = sizeof row->note - used;
-    double low = 50 - 100 * margin, high = 50 + 100 * margin;
-    if (isnan(e->p_value))
-        snprintf(row->note + used, room, "%sequality within %.4g to %.4g %%: not estimable", before, low, high);
-    else
-        snprintf(row->note + used, room, "%sequality within %.4g to %.4g %%: p = %.3g, %s", before, low, high,
-                 e->p_value, verdicts[stat_verdict(row->p_value, e->p_value, alpha)]);
-}
-
-// One answer each: answers are independent. Several: people are.
-static void choices_row(struct planned_row *row, const struct stat_person *people, size_t count, double conf,
-                        const struct plan *plan, double margin)
-{
-    struct stat_people sum = stat_people_sum(people, count);
-    bool tested = plan_is(plan, "binomial", NULL, NULL), several = sum.most_n > 1;
-    struct stat_binomial b = stat_binomial_test(sum.k, sum.n, 0.5, conf, STAT_TWO_SIDED);
-    struct stat_ttest t = stat_people_t(people, count, &(struct stat_ttest_options){.mean = 0.5, .conf = conf});
-    struct stat_signflip flip = stat_signflip(people, several ? count : 0, STAT_TWO_SIDED);
-    row->people = sum.people;
-    row->share = true;
-    row->estimate = stat_people_share(people, count);
-    row->low = several ? t.ci_low : b.ci.low;
-    row->high = several ? t.ci_high : b.ci.high;
-    if (!tested)
-        return;
-    row->p_value = !several ? b.p_value : isnan(flip.p_value) ? t.p_value : flip.p_value;
-    snprintf(row->test, sizeof row->test, "%s, %" PRId64 " of %" PRId64,
-             !several              ? "exact binomial"
-             : isnan(flip.p_value) ? "t of the people\u2019s shares"
-                                   : "sign-flip of people",
-             sum.k, sum.n);
-    double least = several ? flip.least_p : stat_binomial_p(0, sum.n, 0.5, STAT_TWO_SIDED);
-    if (least > 1 - conf)
-        snprintf(row->note, sizeof row->note, "cannot reach %.4g: the smallest p of so few is %.3g", 1 - conf,
-                 least);
-    if (isnan(margin) || !(conf > 0.5))
-        return;
-    struct stat_equivalence e = several ? stat_people_equivalence(people, count, 0.5, margin, 1 - conf)
-                                        : stat_binomial_equivalence(sum.k, sum.n, 0.5, margin, 1 - conf);
-    write_equivalence(row, &e, margin, 1 - conf);
 }
 
 // Means over people, tested against 0 where they are differences already.
@@ -139,21 +79,23 @@ static size_t count_partial(const struct planned_data *data, const struct planne
     return partial;
 }
 
+static bool differences(const struct planned_data *data)
+{
+    return data->cell_count > 0 && data->cells[0].difference;
+}
+
 static bool group_row(struct planned *out, const struct planned_data *data, const struct planned_group *group,
                       const struct plan *plan, size_t index, void *room)
 {
+    if (data->counts && !plan_is(plan, "paired_t", NULL, NULL))
+        return planned_choices(out, data, group, plan, index, count_partial(data, group), room);
     struct planned_row *row = planned_row_add(out, index);
     if (!row)
         return false;
     snprintf(row->words, sizeof row->words, "%s", group->words);
-    if (data->counts && !plan_is(plan, "paired_t", NULL, NULL)) {
-        sum_people(data, group, room);
-        choices_row(row, room, data->sample->person_count, out->conf, plan,
-                    group->series[0] ? (double)NAN : plan->margin); // a margin is of preferences
-    } else {
-        mean_row(row, data, group, plan_is(plan, "paired_t", NULL, NULL), out->conf, room);
-    }
+    row->difference = differences(data);
     row->partial = count_partial(data, group);
+    mean_row(row, data, group, plan_is(plan, "paired_t", NULL, NULL), out->conf, room);
     return true;
 }
 
@@ -214,11 +156,6 @@ static const char *senseless(const struct plan *plan)
     return NULL;
 }
 
-static bool differences(const struct planned_data *data)
-{
-    return data->cell_count > 0 && data->cells[0].difference;
-}
-
 static bool plan_rows(struct planned *out, const struct planned_data *data, const struct plan *plan,
                       size_t index, const struct planned_sources *sources)
 {
@@ -267,21 +204,26 @@ static bool add_plan(struct planned *out, struct sample *sample, const struct pl
     return ok && (!why || row);
 }
 
-// Over the planned family.
-static bool finish_holm(struct planned *out)
+// Over the planned family. No preference has both no difference and one beyond the margin.
+static bool adjust(struct planned *out)
 {
-    double *p = malloc((out->row_count + 1) * sizeof *p);
-    if (!p)
-        return false;
-    for (size_t i = 0; i < out->row_count; i++) {
+    double *p = calloc(out->row_count + 1, sizeof *p);
+    size_t *set = calloc(out->row_count + 1, sizeof *set);
+    for (size_t i = 0; p && set && i < out->row_count; i++) {
         p[i] = out->rows[i].p_value;
+        set[i] = isnan(out->rows[i].margin) ? i : i - 1;
         out->tested += isnan(p[i]) ? 0 : 1;
     }
-    stat_adjust_holm(p, out->row_count, p);
-    for (size_t i = 0; i < out->row_count; i++)
+    bool ok = p && set;
+    if (ok)
+        stat_adjust_exclusive(p, set, out->row_count, p);
+    for (size_t i = 0; ok && i < out->row_count; i++)
         out->rows[i].holm = p[i];
     free(p);
-    return true;
+    free(set);
+    if (ok)
+        planned_verdicts(out);
+    return ok;
 }
 
 bool planned_load(struct planned *out, struct sample *sample, const struct plans *plans,
@@ -292,7 +234,7 @@ bool planned_load(struct planned *out, struct sample *sample, const struct plans
     snprintf(error, error_size, "not enough memory");
     for (size_t i = 0; ok && i < plans->count; i++)
         ok = add_plan(out, sample, plans, i, sources, error, error_size);
-    ok = ok && finish_holm(out);
+    ok = ok && adjust(out);
     if (ok)
         error[0] = '\0';
     else

@@ -42,6 +42,8 @@ bool planned_data_add(struct planned_data *data, const struct planned_cell *like
     struct planned_cell *cell = find(data, like);
     if (!cell)
         return false;
+    if (cell->minuend != like->minuend || cell->subtrahend != like->subtrahend)
+        cell->minuend = cell->subtrahend = SAMPLE_NONE;
     cell->sum[person] += value;
     cell->count[person] += count;
     return true;
@@ -74,8 +76,13 @@ static bool add_thresholds(struct planned_data *data, const struct thresholds *t
                                                           : (double)NAN;
             if (p->person != SAMPLE_NONE && isfinite(value) &&
                 !planned_data_add(data,
-                                  &(struct planned_cell){series, c->block, c->factors, "", SAMPLE_NONE,
-                                                         SAMPLE_NONE, c->words, false, NULL, NULL},
+                                  &(struct planned_cell){.series = series,
+                                                         .block = c->block,
+                                                         .factors = c->factors,
+                                                         .scene = "",
+                                                         .test = SAMPLE_NONE,
+                                                         .reference = SAMPLE_NONE,
+                                                         .words = c->words},
                                   p->person, value, 1))
                 return false;
         }
@@ -89,8 +96,13 @@ static bool add_adjusted(struct planned_data *data, const struct adjusted *adjus
         const struct adjusted_cell *c = &adjusted->cells[i];
         for (size_t j = 0; j < c->person_count; j++)
             if (!planned_data_add(data,
-                                  &(struct planned_cell){c->parameter, c->block, c->factors, "", SAMPLE_NONE,
-                                                         SAMPLE_NONE, c->words, false, NULL, NULL},
+                                  &(struct planned_cell){.series = c->parameter,
+                                                         .block = c->block,
+                                                         .factors = c->factors,
+                                                         .scene = "",
+                                                         .test = SAMPLE_NONE,
+                                                         .reference = SAMPLE_NONE,
+                                                         .words = c->words},
                                   c->people[j].person, c->people[j].mean, 1))
                 return false;
     }

@@ -3,6 +3,7 @@
 #define ANALYSIS_REPORT_PLANNED_DATA_H
 
 #include "analysis/report/planned.h"
+#include "analysis/stats/people.h"
 
 struct planned_cell {
     const char *series; // what must not be joined with others: a question, a parameter; "" where there is one
@@ -10,8 +11,9 @@ struct planned_cell {
     const char *scene;      // "" unless the plan is per scene
     size_t test, reference; // conditions; SAMPLE_NONE where they do not tell cells apart
     const char *words;
-    bool difference; // values are differences already, of a person's two ratings
-    double *sum;     // per person of the sample
+    bool difference;            // values are differences already, of a person's two ratings
+    size_t minuend, subtrahend; // of differences: conditions; SAMPLE_NONE where several were
+    double *sum;                // per person of the sample
     int64_t *count;
 };
 
@@ -40,7 +42,7 @@ const char *planned_level(const struct planned_data *data, const struct planned_
 // planned_groups.c: a row's cells.
 struct planned_group {
     const char *series, *factor, *level; // factor NULL: cells or all of them
-    char words[320];
+    char words[512];
     size_t *cells;
     size_t cell_count;
 };
@@ -52,6 +54,12 @@ struct planned_groups {
 
 bool planned_groups_load(struct planned_groups *out, const struct planned_data *data, const struct plan *plan);
 void planned_groups_free(struct planned_groups *groups);
+
+// planned_choices.c: a group's choices, and where the plan has a margin the row of equality after it. `room`: a
+// struct stat_person for each person of the sample. False where memory ran out.
+bool planned_choices(struct planned *out, const struct planned_data *data, const struct planned_group *group,
+                     const struct plan *plan, size_t index, size_t partial, struct stat_person *room);
+void planned_verdicts(struct planned *planned); // of the rows of equality, once Holm's p are known
 
 // planned_pairs.c: rows of pairs of groups. Appends; false where memory ran out.
 bool planned_pairs(struct planned *out, const struct planned_data *data, const struct planned_groups *groups,

@@ -37,9 +37,10 @@ static bool join(struct planned_groups *groups, const struct planned_data *data,
         if (level)
             level_words(factor, level, true, words);
         bool named = alone && name_block(data, c), all = strcmp(c->words, "all") == 0;
-        snprintf(group.words, sizeof group.words, "%.100s%s%.40s%s%.160s", c->series,
-                 c->series[0] && (level || alone) ? ": " : "", named ? c->block : "", named && !all ? ": " : "",
-                 alone && !(named && all) ? c->words : words);
+        const char *rest = alone && !(named && all) ? c->words : words;
+        snprintf(group.words, sizeof group.words, "%.280s%s%.40s%s%.160s", c->series,
+                 c->series[0] && (named || rest[0]) ? ": " : "", named ? c->block : "",
+                 named && !all ? ": " : "", rest);
         if (!sample_grow(&groups->items, groups->count, sizeof groups->items[0]))
             return false;
         groups->items[groups->count++] = group;
@@ -61,6 +62,21 @@ static bool join_levels(struct planned_groups *groups, const struct planned_data
             return false;
     }
     return true;
+}
+
+// Of both options of a trial: which from which, where that is the same in all cells of a group.
+static void name_options(struct planned_group *group, const struct planned_data *data)
+{
+    const struct planned_cell *first = &data->cells[group->cells[0]];
+    bool same = first->difference && first->minuend != SAMPLE_NONE;
+    for (size_t i = 1; i < group->cell_count && same; i++)
+        same = data->cells[group->cells[i]].minuend == first->minuend &&
+               data->cells[group->cells[i]].subtrahend == first->subtrahend;
+    size_t used = strlen(group->words);
+    if (same && first->words[0]) // before and after are named already
+        snprintf(group->words + used, sizeof group->words - used, "%s%.120s \u2212 %.120s",
+                 group->words[0] ? ": " : "", data->sample->conditions[first->minuend].words,
+                 data->sample->conditions[first->subtrahend].words);
 }
 
 static int by_words(const void *x, const void *y)
@@ -88,6 +104,8 @@ bool planned_groups_load(struct planned_groups *out, const struct planned_data *
         else
             ok = join(out, data, i, NULL, NULL, false);
     }
+    for (size_t i = 0; ok && i < out->count; i++)
+        name_options(&out->items[i], data);
     if (ok && out->count > 1)
         qsort(out->items, out->count, sizeof out->items[0], by_words);
     if (!ok)

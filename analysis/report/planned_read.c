@@ -16,6 +16,7 @@ struct filling {
     char question[128], subject;
     double value;
     size_t condition;
+    bool second; // it, or one before it, was planned as the second
 };
 
 static void cell_words(const struct sample *sample, const struct planned_cell *cell, char out[256])
@@ -62,7 +63,8 @@ static bool add_trial(void *user, const struct store_trial_row *row)
     return isnan(row->reaction_s) || add(f, &like, person, row->reaction_s, 1);
 }
 
-// Before and after: of each order by itself, for its differences have opposite meanings.
+// Before and after: of each pair of options in their order by itself, for the differences have other meanings.
+// What was planned first but rated after the second was rated second, and makes no pair (ratings.h).
 static bool add_before_after(struct filling *f, const struct store_rating_row *row, size_t person,
                              size_t condition)
 {
@@ -70,13 +72,16 @@ static bool add_before_after(struct filling *f, const struct store_rating_row *r
     char series[384], words[384];
     bool paired = plan_is(f->plan, "paired_t", NULL, NULL), second = strcmp(row->order, "second") == 0;
     bool waited = f->session_id == row->session_id && strcmp(f->question, row->question) == 0;
+    bool late = waited && !second && f->second;
+    const char *order = late ? "second" : row->order;
     if (!second || !waited) {
         f->session_id = row->session_id;
         snprintf(f->question, sizeof f->question, "%.127s", row->question);
         f->value = row->value;
         f->condition = condition;
+        f->second = second || late;
     }
-    struct planned_cell like = {.block = paired ? "" : row->order,
+    struct planned_cell like = {.block = paired ? "" : order,
                                 .factors = "",
                                 .scene = plan_is(f->plan, NULL, NULL, "scene") ? row->scene : "",
                                 .test = paired ? SAMPLE_NONE : condition,
@@ -85,20 +90,22 @@ static bool add_before_after(struct filling *f, const struct store_rating_row *r
                                 .words = words,
                                 .difference = paired};
     snprintf(series, sizeof series, "%.100s", row->question);
-    snprintf(words, sizeof words, "%.200s, rated %s", sample->conditions[condition].words, row->order);
+    snprintf(words, sizeof words, "%.200s, rated %s", sample->conditions[condition].words, order);
     if (!paired)
         return planned_data_add(f->data, &like, person, row->value, 1);
-    if (!second || !waited || f->condition == condition)
+    if (!second || !waited || f->second || f->condition == condition)
         return true;
     f->session_id = 0;
-    snprintf(series, sizeof series, "%.100s, %.200s first", row->question,
-             sample->conditions[f->condition].words);
-    snprintf(words, sizeof words, "second minus first");
+    snprintf(series, sizeof series, "%.100s, second minus first: %.120s \u2212 %.120s", row->question,
+             sample->conditions[condition].words, sample->conditions[f->condition].words);
+    words[0] = '\0';
+    like.minuend = condition;
+    like.subtrahend = f->condition;
     return planned_data_add(f->data, &like, person, row->value - f->value, 1);
 }
 
 // Both options of a trial: test minus reference where a paired test asks, else each by itself.
-static bool add_option(struct filling *f, const struct store_rating_row *row, size_t person,
+static bool add_option(struct filling *f, const struct store_rating_row *row, size_t person, size_t condition,
                        struct planned_cell *like)
 {
     char series[192];
@@ -115,10 +122,13 @@ static bool add_option(struct filling *f, const struct store_rating_row *row, si
         snprintf(f->question, sizeof f->question, "%.127s", row->question);
         f->subject = row->subject;
         f->value = row->value;
+        f->condition = condition;
         return true;
     }
     f->trial_id = 0;
     like->difference = true;
+    like->minuend = row->subject == 't' ? condition : f->condition;
+    like->subtrahend = row->subject == 't' ? f->condition : condition;
     return add(f, like, person, row->subject == 't' ? row->value - f->value : f->value - row->value, 1);
 }
 
@@ -143,7 +153,7 @@ static bool add_rating(void *user, const struct store_rating_row *row)
                                 .test = SAMPLE_NONE,
                                 .reference = SAMPLE_NONE};
     if (strcmp(row->trial_kind, "rate") != 0 && row->subject != 's')
-        return add_option(f, row, person, &like);
+        return add_option(f, row, person, condition, &like);
     return add(f, &like, person, row->value, 1);
 }
 

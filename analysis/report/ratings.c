@@ -14,6 +14,7 @@ struct open_pair {
     size_t count;
     size_t conditions[2];
     double values[2];
+    bool second[2]; // planned as the second
 };
 
 struct filling {
@@ -62,6 +63,7 @@ static size_t find_person(struct rating_group *group, size_t person)
         return i;
     if (!sample_grow(&group->first, i, sizeof group->first[0]) ||
         !sample_grow(&group->second, i, sizeof group->second[0]) ||
+        !sample_grow(&group->change_of, i, sizeof group->change_of[0]) ||
         !sample_grow(&group->person, i, sizeof group->person[0]) ||
         !sample_grow(&group->sittings, i, sizeof group->sittings[0]))
         return SAMPLE_NONE;
@@ -80,6 +82,10 @@ static bool close_pair(struct filling *f)
     struct rating_question *q = &f->ratings->questions[pair->question];
     if (count < 2 || pair->conditions[0] == pair->conditions[1]) {
         q->unpaired++;
+        return true;
+    }
+    if (pair->second[0] || !pair->second[1]) {
+        q->late_first++;
         return true;
     }
     struct rating_group *group = find_group(q, pair);
@@ -133,6 +139,7 @@ static bool add_before_after(struct filling *f, const struct store_rating_row *r
         return true;
     }
     pair->conditions[pair->count] = condition;
+    pair->second[pair->count] = strcmp(row->order, "second") == 0;
     pair->values[pair->count++] = row->value;
     return true;
 }
@@ -180,15 +187,17 @@ static void finish(struct rating_question *q, double conf, bool pratt)
     for (size_t i = 0; i < q->group_count; i++) {
         struct rating_group *g = &q->groups[i];
         for (size_t k = 0; k < g->n; k++) { // a person's sittings are averaged
+            // of sums, so that equal changes stay equal and tie
+            g->change_of[k] = (g->second[k] - g->first[k]) / g->sittings[k];
             g->first[k] /= g->sittings[k];
             g->second[k] /= g->sittings[k];
         }
         g->first_of = stat_moments(g->first, g->n);
         g->second_of = stat_moments(g->second, g->n);
-        g->change = stat_ttest_paired(g->second, g->first, g->n, &options);
-        g->rank = stat_wilcoxon_paired(g->second, g->first, g->n,
-                                       &(struct stat_wilcoxon_options){.conf = conf, .pratt = pratt});
-        g->effect = stat_effect_paired(g->second, g->first, g->n, conf);
+        g->change = stat_ttest_one_sample(g->change_of, g->n, &options);
+        g->rank =
+            stat_wilcoxon(g->change_of, g->n, &(struct stat_wilcoxon_options){.conf = conf, .pratt = pratt});
+        g->effect = stat_effect_one_sample(g->change_of, g->n, 0, conf);
         g->average = stat_effect_average(g->second, g->first, g->n, conf);
     }
     q->overlap = q->group_count == 2 && overlap(&q->groups[0], &q->groups[1]);
@@ -232,6 +241,7 @@ void ratings_free(struct ratings *ratings)
         for (size_t j = 0; j < ratings->questions[i].group_count; j++) {
             free(ratings->questions[i].groups[j].first);
             free(ratings->questions[i].groups[j].second);
+            free(ratings->questions[i].groups[j].change_of);
             free(ratings->questions[i].groups[j].person);
             free(ratings->questions[i].groups[j].sittings);
         }

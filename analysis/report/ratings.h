@@ -8,6 +8,11 @@
 // averaged. First ratings are compared between the two groups by Welch's t-test (what people say before they
 // have learned to see a difference); second minus first is tested within each group by a paired t-test. The two
 // groups are never pooled: their differences have opposite meanings and would cancel.
+//
+// The order is that in which a person saw the options. A flagged trial comes again after all others: where it
+// was the first one, its option was seen before the other, and what counts was rated after both had been seen.
+// Such a pair has no first rating, belongs to neither order and is left out (`late_first`); a second trial that
+// comes again changes no order.
 #ifndef ANALYSIS_REPORT_RATINGS_H
 #define ANALYSIS_REPORT_RATINGS_H
 
@@ -23,6 +28,7 @@ struct rating_group {
     size_t first_condition, second_condition;
     size_t n;               // people
     double *first, *second; // of each, the mean over sittings
+    double *change_of;      // of each, second minus first, equal where their sums are
     size_t *person;
     double *sittings;
     struct stat_moments first_of, second_of;
@@ -41,6 +47,7 @@ struct rating_question {
     struct stat_ttest first_between;
     struct stat_effect between_effect; // in the pooled SD
     int64_t unpaired;                  // sessions with a rating and no pair
+    int64_t late_first;                // sessions whose rating planned as the first was given after the second
 };
 
 struct ratings {

@@ -105,8 +105,8 @@ void report_audit(const struct report *r)
     if (uncounted)
         fprintf(out,
                 "<p class=\"note\">%" PRId64
-                " %s of the program left no count of frames: a crash. What was shown after "
-                "the last row is not known.</p>\n",
+                " %s of the program left no count of frames (a crash, or it still runs). "
+                "What was shown after the last row is not known.</p>\n",
                 uncounted, uncounted == 1 ? "run" : "runs");
     findings_list(r);
 }

@@ -26,11 +26,11 @@ static void three_row(const struct report *r, const struct choice_cell *cell)
         html_cell(out, "td", "\u2013");
     else
         html_cell(out, "td", "%.1f to %.1f\u00a0%%", 100 * x.negative_ci.low, 100 * x.negative_ci.high);
-    html_cell(out, "td", "%+.3f", x.net);
+    html_cell(out, "td", "%+.2f", x.net);
     if (isnan(x.net_ci.low))
         html_cell(out, "td", "\u2013");
     else
-        html_cell(out, "td", "%+.3f to %+.3f", x.net_ci.low, x.net_ci.high);
+        html_cell(out, "td", "%+.2f to %+.2f", x.net_ci.low, x.net_ci.high);
     html_cell(out, "td", "%s", p);
     fputs("</tr>\n", out);
 }
@@ -43,8 +43,9 @@ void report_choice_three(const struct report *r)
         r, &r->three_figure,
         "Net preference per cell: the mean over people of answers for the test option minus those for the "
         "reference, over all answers, with its t interval; \u201cequal\u201d counts 0. Negative: the "
-        "reference was preferred (as in Stengel et al. 2016, Figure 7). Intervals are drawn no further "
-        "than \u22121 and 1; the table has them whole.");
+        "reference was preferred (as in Stengel et al. 2016, Figure 7). An arrow marks an interval that goes "
+        "on "
+        "beyond \u22121 or 1, as a t interval of few people may; the table has it whole.");
     for (size_t i = 0; i < c->cell_count; i++) {
         if (!choice_three_applies(c, &c->cells[i]))
             continue;
@@ -52,7 +53,8 @@ void report_choice_three(const struct report *r)
             fprintf(
                 r->out,
                 "<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"Answers of three kinds\">"
-                "<table>\n<caption>Answers of three kinds, as in Stengel et al. 2016, Figure 7: negative are "
+                "<table class=\"wrap\">\n<caption>Answers of three kinds, as in Stengel et al. 2016, Figure 7: "
+                "negative are "
                 "those for the reference</caption>\n<thead><tr><th scope=\"col\" class=\"word\">cell</th><th "
                 "scope=\"col\">people</th><th scope=\"col\">test better</th><th scope=\"col\">equal</th><th "
                 "scope=\"col\">reference better</th><th scope=\"col\">negative</th><th "

@@ -94,14 +94,17 @@ void report_summary(const struct report *r)
     if (cells > outside)
         fputs("The other cells show no clear preference, which does not show that the options look the same. ",
               r->out);
-    html_printf(r->out, "With Holm\u2019s correction for the number of cells, %" PRId64 " of them %s.", holm,
-                holm == 1 ? "remains" : "remain");
-    fputs("</p>\n", r->out);
+    fputs("With Holm\u2019s correction for the number of cells, ", r->out);
+    if (holm == 0)
+        fputs("none remains.</p>\n", r->out);
+    else
+        html_printf(r->out, "%" PRId64 " of them %s.", holm, holm == 1 ? "remains" : "remain");
+    fputs(holm ? "</p>\n" : "", r->out);
 }
 
 static void choices_caption(const struct report *r, char *out, size_t size)
 {
-    char region[512] = "", interval[256] = "";
+    char region[512] = "", interval[384] = "";
     if (r->choices.one_each)
         snprintf(
             region, sizeof region,
@@ -113,15 +116,14 @@ static void choices_caption(const struct report *r, char *out, size_t size)
         snprintf(
             interval, sizeof interval,
             "%s the mean of the people\u2019s shares, with its %g&nbsp;%% t interval as a line instead of a "
-            "region. ",
+            "region; an arrow marks one that goes on beyond 0 or 100&nbsp;%%, which the table has whole. ",
             r->choices.one_each ? "Where a person answered several times in a cell, the bar is"
                                 : "Each person answered several times in a cell; the bar is",
             100 * r->conf);
     snprintf(out, size,
-             "<span class=\"key\" style=\"background:#e8912d\"></span> Percent of choices for the test option, "
-             "or of right answers. %s%s"
-             "Dashed: 50&nbsp;%%. In the bars: percent, and answers for the test option of all answers.%s",
-             region, interval,
+             "<span class=\"key\" style=\"background:#e8912d\"></span> Percent of %s. %s%s"
+             "Dashed: 50&nbsp;%%. In the bars: percent, and how many of all answers.%s",
+             figure_choices_what(&r->choices), region, interval,
              !figure_choices_numbered(&r->choices)
                  ? ""
                  : " Numbers under the bars are those of the table\u2019s rows.");
@@ -172,7 +174,8 @@ static void choices_table(const struct report *r)
     bool numbered = figure_choices_numbered(c);
     fprintf(out,
             "<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"Choices per "
-            "cell\"><table>\n<caption>Choices per cell, %s against 50&nbsp;%%</caption>\n<thead><tr>",
+            "cell\"><table class=\"wrap\">\n<caption>Choices per cell, %s against "
+            "50&nbsp;%%</caption>\n<thead><tr>",
             !c->several   ? "exact two-sided binomial test"
             : c->one_each ? "exact two-sided binomial or sign-flip test"
                           : "exact two-sided sign-flip test");
@@ -288,12 +291,17 @@ void report_toggles(const struct report *r)
         html_printf(r->out, "%.2f switches before a decision (SD %.2f) over %zu answers. ", c->toggles.mean,
                     c->toggles.sd, c->toggles.n);
     int64_t decided = c->answers - c->equal;
-    if (decided)
-        html_printf(r->out,
-                    "Over all %" PRId64 " answers for an option: the one shown first was chosen "
-                    "in %" PRId64 " (%.0f\u00a0%%), the one in slot a in %" PRId64 " (%.0f\u00a0%%).",
-                    decided, c->chosen_first, 100 * (double)c->chosen_first / (double)decided, c->chosen_a,
+    if (decided) {
+        html_printf(r->out, "Over all %" PRId64 " answers for an option: ", decided);
+        if (c->first_known)
+            html_printf(r->out, "the one shown first was chosen in %" PRId64 " (%.0f\u00a0%%), ",
+                        c->chosen_first, 100 * (double)c->chosen_first / (double)c->first_known);
+        html_printf(r->out, "the one in slot a in %" PRId64 " (%.0f\u00a0%%).", c->chosen_a,
                     100 * (double)c->chosen_a / (double)decided);
+        if (c->first_known < decided)
+            html_printf(r->out, " Of %" PRId64 " it is not known which was shown first.",
+                        decided - c->first_known);
+    }
     fputs("</p>\n", r->out);
     toggles_table(r);
 }

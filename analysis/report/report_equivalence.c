@@ -4,6 +4,7 @@
 #include "analysis/report/sections.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 static void p_cell(FILE *out, double value)
 {
@@ -12,28 +13,30 @@ static void p_cell(FILE *out, double value)
     html_cell(out, "td", "%s", isnan(value) ? "\u2013" : p);
 }
 
-static void equivalence_row(const struct report *r, const struct choice_cell *cell, double margin)
+static void equivalence_row(const struct report *r, const struct choice_cell *cell,
+                            const struct choice_equality *equality)
 {
     FILE *out = r->out;
     char words[256];
-    struct stat_equivalence e = choice_equivalence(&r->choices, cell, margin);
+    const struct stat_equivalence *e = &equality->test;
     report_cell_words(cell, words);
     fputs("<tr>", out);
     html_cell(out, "th scope=\"row\" class=\"word\"", "%s", words);
     html_cell(out, "td", "%zu", stat_people_sum(cell->counts, cell->people).people);
     html_cell(out, "td class=\"word\"", "%s", choice_equivalence_method(cell));
-    if (isnan(e.ci.low))
+    if (isnan(e->ci.low))
         html_cell(out, "td", "\u2013");
     else
-        html_cell(out, "td", "%.1f to %.1f\u00a0%%", 100 * e.ci.low, 100 * e.ci.high);
-    p_cell(out, e.p_low);
-    p_cell(out, e.p_high);
-    p_cell(out, e.p_value);
-    html_cell(out, "td class=\"word\"", "%s", choice_equivalence_words(cell->p_value, &e, 1 - r->conf));
+        html_cell(out, "td", "%.1f to %.1f\u00a0%%", 100 * e->ci.low, 100 * e->ci.high);
+    p_cell(out, e->p_low);
+    p_cell(out, e->p_high);
+    p_cell(out, e->p_value);
+    p_cell(out, equality->holm);
+    html_cell(out, "td class=\"word\"", "%s", choice_equivalence_words(cell, equality, 1 - r->conf));
     fputs("</tr>\n", out);
 }
 
-static void equivalence_table(const struct report *r, double margin)
+static void equivalence_table(const struct report *r, double margin, const struct choice_equality *equalities)
 {
     FILE *out = r->out;
     fprintf(out,
@@ -42,20 +45,30 @@ static void equivalence_table(const struct report *r, double margin)
             "protocol\u2019s margin?</caption>\n<thead><tr><th scope=\"col\" class=\"word\">cell</th><th "
             "scope=\"col\">people</th><th scope=\"col\" class=\"word\">two one-sided tests</th><th "
             "scope=\"col\">%.4g&nbsp;%% interval</th><th scope=\"col\">p above</th><th scope=\"col\">p "
-            "below</th><th scope=\"col\">p</th><th scope=\"col\" "
+            "below</th><th scope=\"col\">p</th><th scope=\"col\">p (Holm)</th><th scope=\"col\" "
             "class=\"word\">result</th></tr></thead>\n<tbody>\n",
             50 - 100 * margin, 50 + 100 * margin, 100 * (1 - 2 * (1 - r->conf)));
     for (size_t i = 0; i < r->choices.cell_count; i++)
         if (!r->choices.cells[i].right)
-            equivalence_row(r, &r->choices.cells[i], margin);
+            equivalence_row(r, &r->choices.cells[i], &equalities[i]);
     fprintf(out, "</tbody></table></div>\n<p>%s",
             r->choices.equal ? "Of answers for one of the options; \u201cequal\u201d is none. " : "");
-    fputs(
-        "p above and below: that the share lies above the lower and below the "
-        "upper end of the margin; p is the larger of both, not adjusted for the number of cells. Only a small "
-        "p shows equality, and equality within this margin alone; a large p in the table before does "
-        "not.</p>\n",
-        out);
+    fputs("p above and below: that the share lies above the lower and below the upper end of the margin; p is "
+          "the larger of both, p (Holm) is adjusted over the cells of this table. Results are by p (Holm), of "
+          "differences by that of the table before. Only a small p shows equality, and equality within this "
+          "margin alone; a large p in the table before does not. A paper\u2019s claim is that of the planned "
+          "analyses, where p is adjusted for all that was planned.</p>\n",
+          out);
+}
+
+static void equivalence(const struct report *r, double margin)
+{
+    struct choice_equality *equalities = choice_equalities(&r->choices, margin, false);
+    if (equalities)
+        equivalence_table(r, margin, equalities);
+    else
+        fputs("<p class=\"note\">Equivalence is not tested here: not enough memory.</p>\n", r->out);
+    free(equalities);
 }
 
 void report_equivalence(const struct report *r)
@@ -67,7 +80,7 @@ void report_equivalence(const struct report *r)
               "margins; <code>fovstats choices --margin M</code> tests one.</p>\n",
               r->out);
     else if (!isnan(margin) && r->conf > 0.5)
-        equivalence_table(r, margin);
+        equivalence(r, margin);
     else if (!isnan(margin))
         fputs("<p class=\"note\">Equivalence within the protocol\u2019s margin is tested at a confidence above "
               "0.5 only.</p>\n",

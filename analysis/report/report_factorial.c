@@ -95,7 +95,10 @@ static void means_table(const struct report *r, const struct factorial *f)
             html_cell(r->out, "th scope=\"row\" class=\"word\"", "%s", k ? "" : factor->name);
             html_cell(r->out, "td class=\"word\"", "%s", factor->levels[k]);
             number(r->out, "%.2f", factor->mean[k]);
-            html_cell(r->out, "td", "%.2f to %.2f", factor->mean[k] - half, factor->mean[k] + half);
+            if (isnan(f->anova.effects[j].p_gg))
+                html_cell(r->out, "td", "no spread");
+            else
+                html_cell(r->out, "td", "%.2f to %.2f", factor->mean[k] - half, factor->mean[k] + half);
             fputs("</tr>\n", r->out);
         }
     close_table(r->out);
@@ -120,9 +123,32 @@ static void pair_row(FILE *out, const struct factorial_factor *factor, const str
     fputs("</tr>\n", out);
 }
 
+static void pairs_words(const struct report *r, const struct factorial *f, bool any)
+{
+    char names[256];
+    size_t untested = factorial_untested(f, names);
+    fputs("<p>", r->out);
+    if (any)
+        fputs("p Holm: adjusted over the pairs of that factor. ", r->out);
+    if (untested)
+        html_printf(
+            r->out,
+            "%s cannot be tested: everybody\u2019s ratings differ by the same between levels, so that there "
+            "is nothing to hold an effect against, however large it is; see the means. ",
+            names);
+    if (any)
+        fputs("Levels of factors that show no effect are not compared.", r->out);
+    else if (untested < f->factor_count)
+        fprintf(r->out,
+                "No %sfactor by itself shows an effect, so %s levels are not compared; that does not show that "
+                "they are alike.",
+                untested ? "other " : "", untested ? "their" : "its");
+    fputs("</p>\n", r->out);
+}
+
 static void pairs_tables(const struct report *r, const struct factorial *f)
 {
-    char ci[32], caption[64];
+    char ci[32];
     snprintf(ci, sizeof ci, "%g&nbsp;%% interval", 100 * r->conf);
     const char *const headings[] = {"levels", "difference", ci, "t", "p", "p Holm", "d<sub>z</sub>", ci, NULL};
     bool any = false;
@@ -134,19 +160,12 @@ static void pairs_tables(const struct report *r, const struct factorial *f)
         fputs("<p>", r->out);
         html_printf(r->out, "Levels of %s, over all other factors:", factor->name);
         fputs("</p>\n", r->out);
-        snprintf(caption, sizeof caption, "Pairs of levels, paired t-tests, factor %zu", j + 1);
-        open_table(r->out, caption, "", headings, 1);
+        open_table(r->out, "Pairs of levels, paired t-tests", "", headings, 1);
         for (size_t i = 0; i < factor->pair_count; i++)
             pair_row(r->out, factor, &factor->pairs[i]);
         close_table(r->out);
     }
-    fputs(
-        any ? "<p>p Holm: adjusted over the pairs of that factor. Levels of factors that show no effect are "
-              "not "
-              "compared.</p>\n"
-            : "<p>No factor by itself shows an effect, so its levels are not compared; that does not show that "
-              "they are alike.</p>\n",
-        r->out);
+    pairs_words(r, f, any);
 }
 
 static void left_out(const struct report *r, const struct factorial *f)
@@ -159,10 +178,15 @@ static void left_out(const struct report *r, const struct factorial *f)
     if (f->left_count == 0)
         return;
     fputs("<p class=\"note\">", r->out);
-    html_printf(r->out, "Left out, since nothing is filled in: ");
-    for (size_t i = 0; i < f->left_count; i++)
-        html_printf(r->out, "%s%s (no rating in %zu of %zu cells)", i ? ", " : "",
-                    r->sample->people[f->left[i].person].code, f->left[i].missing, f->cells);
+    html_printf(r->out, "Left out, as missing ratings are never filled in: ");
+    for (size_t i = 0, alike = 1; i < f->left_count; i++, alike++) { // who lack as many one after another
+        html_printf(r->out, "%s%s", i ? ", " : "", r->sample->people[f->left[i].person].code);
+        if (i + 1 < f->left_count && f->left[i + 1].missing == f->left[i].missing)
+            continue;
+        html_printf(r->out, " (no rating in %zu of %zu cells%s)", f->left[i].missing, f->cells,
+                    alike > 1 ? " each" : "");
+        alike = 0;
+    }
     fputs(".</p>\n", r->out);
 }
 
@@ -199,7 +223,7 @@ void report_factorial(const struct report *r, const struct factorial *f, const s
             r, means,
             "Mean ratings per level, over all other factors, on the whole scale. Lines: intervals within "
             "people (Cousineau\u2013Morey), which compare the levels of one factor and do not say where a "
-            "mean lies.");
+            "mean lies; an arrow marks one that goes on beyond the scale.");
     effects_table(r, f);
     means_table(r, f);
     pairs_tables(r, f);

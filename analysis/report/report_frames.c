@@ -127,8 +127,9 @@ void report_frames(const struct report *r)
                   "Time per stimulus frame on the GPU (on the CPU where no GPU time is known): dot and number, "
                   "median; dark line to the 95th, pale line to the 99th percentile.");
     fputs("<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"Frame "
-          "times\"><table>\n<caption>Milliseconds; "
-          "percentiles of type 7</caption>\n<thead><tr><th scope=\"col\" class=\"word\">phase</th><th "
+          "times\"><table>\n<caption>Times in milliseconds; "
+          "percentiles as R\u2019s quantile() has them (type 7)</caption>\n<thead><tr><th scope=\"col\" "
+          "class=\"word\">phase</th><th "
           "scope=\"col\" "
           "class=\"word\">option</th><th scope=\"col\">frames</th><th scope=\"col\">late</th><th "
           "scope=\"col\">GPU "

@@ -32,6 +32,13 @@ static void number(FILE *out, const char *format, double value)
     html_cell(out, "td", "%s", isnan(value) ? "\u2013" : text);
 }
 
+static void rate(FILE *out, const struct gaze_record *record)
+{
+    char words[GAZE_REASON_SIZE];
+    gaze_rate_words(record, words);
+    html_cell(out, "td", "%s", words[0] ? words : "\u2013");
+}
+
 static void three(FILE *out, double x, double y, double both)
 {
     if (isnan(both))
@@ -51,10 +58,19 @@ static void who(const struct report *r, const struct gaze_record *record)
 
 static void quality_table(const struct report *r, const struct gaze_record *records, size_t count)
 {
-    static const char *const headings[] = {"<participant", "session",    "<eye",     "samples",     "Hz",
-                                           "not valid, %", "missing, %", "accuracy", "offset x, y", NULL};
-    static const char *const people[] = {"<participant", "<eye",     "samples",     "Hz", "not valid, %",
-                                         "missing, %",   "accuracy", "offset x, y", NULL};
+    static const char *const headings[] = {"<participant",
+                                           "session",
+                                           "<eye",
+                                           "samples",
+                                           "Hz",
+                                           "not valid, %",
+                                           "missing, %",
+                                           "accuracy, \u00b0",
+                                           "offset x, y, \u00b0",
+                                           NULL};
+    static const char *const people[] = {
+        "<participant",        "<eye", "samples", "Hz", "not valid, %", "missing, %", "accuracy, \u00b0",
+        "offset x, y, \u00b0", NULL};
     FILE *out = r->out;
     bool of_sessions = records == r->gaze.records;
     table_head(out, of_sessions ? "Gaze per session: data loss and accuracy" : "Gaze: data loss and accuracy",
@@ -64,10 +80,10 @@ static void quality_table(const struct report *r, const struct gaze_record *reco
         const struct gaze_target *accuracy = gaze_accuracy(&records[i]);
         who(r, &records[i]);
         html_cell(out, "td", "%" PRId64, q->samples);
-        number(out, "%.1f", records[i].rate_hz);
+        rate(out, &records[i]);
         number(out, "%.2f", q->samples ? 100 * (double)q->invalid / (double)q->samples : (double)NAN);
         number(out, "%.2f", 100 * records[i].missing / gaze_due(&records[i]));
-        number(out, "%.2f", accuracy ? accuracy->distance.mean : (double)NAN);
+        number(out, "%.2f", accuracy ? accuracy->error.mean : (double)NAN);
         if (accuracy)
             html_cell(out, "td", "%+.2f, %+.2f", accuracy->offset.mean_x, accuracy->offset.mean_y);
         else
@@ -79,10 +95,11 @@ static void quality_table(const struct report *r, const struct gaze_record *reco
 
 static void precision_table(const struct report *r, const struct gaze_record *records, size_t count)
 {
-    static const char *const headings[] = {"<participant",  "session", "<eye", "RMS-S2S h, v, both",
-                                           "SD h, v, both", "BCEA",    NULL};
-    static const char *const people[] = {"<participant",  "<eye", "RMS-S2S h, v, both",
-                                         "SD h, v, both", "BCEA", NULL};
+    static const char *const headings[] = {
+        "<participant",          "session",         "<eye", "RMS-S2S h, v, both, \u00b0",
+        "SD h, v, both, \u00b0", "BCEA, deg\u00b2", NULL};
+    static const char *const people[] = {
+        "<participant", "<eye", "RMS-S2S h, v, both, \u00b0", "SD h, v, both, \u00b0", "BCEA, deg\u00b2", NULL};
     FILE *out = r->out;
     bool of_sessions = records == r->gaze.records;
     table_head(out, of_sessions ? "Precision per session" : "Precision", of_sessions ? headings : people);
@@ -132,45 +149,78 @@ static void events_table(const struct report *r)
     table_foot(out);
 }
 
+// A cell over all the columns that one reason keeps empty.
+static void no_estimate(FILE *out, int columns, const char *why)
+{
+    fprintf(out, "<td colspan=\"%d\" class=\"word\">", columns);
+    html_printf(out, "not estimable: %s", why);
+    fputs("</td>", out);
+}
+
+static void sequence_row(FILE *out, const struct gaze_record *person)
+{
+    char vmax[GAZE_REASON_SIZE], c[GAZE_REASON_SIZE], power[GAZE_REASON_SIZE];
+    const struct stat_main_sequence *m = &person->main_sequence;
+    bool level = !gaze_sequence_problem(person, GAZE_VMAX, vmax);
+    bool shape = !gaze_sequence_problem(person, GAZE_C, c);
+    bool straight = !gaze_sequence_problem(person, GAZE_POWER, power);
+    bool same = !shape && strcmp(c, power) == 0;
+    if (level)
+        html_cell(out, "td", "%.0f [%.0f, %.0f]", m->vmax.value, m->vmax.low, m->vmax.high);
+    if (level && shape)
+        html_cell(out, "td", "%.2f [%.2f, %.2f]", m->c.value, m->c.low, m->c.high);
+    else
+        no_estimate(out, (level ? 1 : 2) + (same ? 2 : 0), c);
+    if (straight) {
+        html_cell(out, "td", "%.1f [%.1f, %.1f]", m->k.value, m->k.low, m->k.high);
+        html_cell(out, "td", "%.3f [%.3f, %.3f]", m->b.value, m->b.low, m->b.high);
+    } else if (!same) {
+        no_estimate(out, 2, power);
+    }
+}
+
 static void sequence_table(const struct report *r)
 {
-    static const char *const headings[] = {"<participant", "<eye", "saccades", "V<sub>max</sub>, \u00b0/s",
-                                           "c, \u00b0",    "k",    "b",        NULL};
+    static const char *const headings[] = {
+        "<participant", "<eye", "saccades", "V<sub>max</sub>, \u00b0/s", "c, \u00b0", "k, \u00b0/s", "b", NULL};
     FILE *out = r->out;
+    char words[GAZE_WORDS_SIZE];
     table_head(out, "Main sequence", headings);
     for (size_t i = 0; i < r->gaze.person_count; i++) {
-        const struct stat_main_sequence *m = &r->gaze.people[i].main_sequence;
-        who(r, &r->gaze.people[i]);
-        html_cell(out, "td", "%zu", m->n);
-        if (m->problem) {
-            html_cell(out, "td colspan=\"2\" class=\"word\"", "not estimable: %s", m->problem);
-        } else {
-            html_cell(out, "td", "%.0f [%.0f, %.0f]", m->vmax.value, m->vmax.low, m->vmax.high);
-            html_cell(out, "td", "%.2f [%.2f, %.2f]", m->c.value, m->c.low, m->c.high);
-        }
-        if (m->power_problem) {
-            html_cell(out, "td colspan=\"2\" class=\"word\"", "not estimable: %s", m->power_problem);
-        } else {
-            html_cell(out, "td", "%.1f [%.1f, %.1f]", m->k.value, m->k.low, m->k.high);
-            html_cell(out, "td", "%.3f [%.3f, %.3f]", m->b.value, m->b.low, m->b.high);
-        }
+        const struct gaze_record *person = &r->gaze.people[i];
+        who(r, person);
+        html_cell(out, "td", "%zu", person->main_sequence.n);
+        sequence_row(out, person);
         fputs("</tr>\n", out);
     }
     table_foot(out);
+    gaze_sequence_words(&r->gaze, words);
+    fputs("<p>", out);
+    html_printf(out, "%s", words);
+    fputs("</p>\n", out);
 }
 
 static void targets_table(const struct report *r)
 {
-    static const char *const headings[] = {"<participant", "<eye",    "<target",          "samples", "M (SD)",
-                                           "median",       "outside", "target not known", NULL};
+    static const char *const headings[] = {
+        "<participant",     "<eye", "<target", "samples", "M (SD)", "median", "samples outside",
+        "target not known", NULL};
     const struct gaze_over *over = &r->gaze_over;
     FILE *out = r->out;
-    if (over->target_count == 0) {
+    int64_t flat = gaze_flat_samples(&r->gaze);
+    if (over->target_count == 0 && flat == 0)
         fputs("<p>No trial that counts had a fixation target: accuracy and distance to it are not "
               "estimable.</p>\n",
               out);
+    if (flat)
+        fprintf(
+            out,
+            "<p class=\"note\">Samples of one eye that cannot be compared with the target, since the file (of "
+            "an older version) does not tell how far away it was: %" PRId64
+            ". Accuracy and distance are not estimable by them.</p>\n",
+            flat);
+    if (over->target_count == 0)
         return;
-    }
     table_head(out, "Distance of the gaze to the fixation target, degrees", headings);
     for (size_t i = 0; i < r->gaze.person_count; i++)
         for (size_t j = 0; j < r->gaze.people[i].target_count; j++) {
@@ -232,78 +282,17 @@ static void latencies_table(const struct report *r)
     table_foot(out);
 }
 
-static void limits(const struct report *r)
-{
-    const struct gaze_report *g = &r->gaze;
-    FILE *out = r->out;
-    size_t named = 0, failed = 0;
-    struct gaze_running accuracy = {.n = 0};
-    double worst = 0;
-    for (size_t i = 0; i < g->check_count; i++) {
-        failed += !g->checks[i].passed;
-        if (isnan(g->checks[i].accuracy_deg))
-            continue;
-        gaze_running_add(&accuracy, g->checks[i].accuracy_deg);
-        worst = fmax(worst, g->checks[i].accuracy_deg);
-    }
-    if (g->check_count)
-        fprintf(out, "<p>Independent checks of the tracker: points %zu, not passed %zu.", g->check_count,
-                failed);
-    if (accuracy.n)
-        fprintf(out, " Mean distance from the points: %.2f\u00b0, at worst %.2f\u00b0.", accuracy.mean, worst);
-    fputs(g->check_count ? "</p>\n" : "", out);
-    for (size_t i = 0; i < g->silent_count; i++) {
-        fputs("<p class=\"note\">", out);
-        html_printf(out, "Session %" PRId64 " had a tracker and no sample in any trial.",
-                    r->sample->sessions[g->silent[i]].id);
-        fputs("</p>\n", out);
-    }
-    for (size_t i = 0; i < r->sample->exclusion_count; i++) {
-        const struct sample_exclusion *e = &r->sample->exclusions[i];
-        if (strncmp(e->rule, "gaze_", 5) != 0)
-            continue;
-        fputs(named++ ? "" : "<p>The protocol\u2019s limits for the gaze were exceeded:</p>\n<ul>\n", out);
-        fputs("<li>", out);
-        html_printf(out, "%s, trial %" PRId64 ", %s (%s): %s", e->code, e->trial_id, e->rule, e->rule_set,
-                    e->reason);
-        fputs("</li>\n", out);
-    }
-    fputs(named ? "</ul>\n" : "", out);
-}
-
-static void methods(const struct report *r)
-{
-    const struct gaze_options *o = &r->gaze.options;
-    FILE *out = r->out;
-    fputs("<p>", out);
-    html_printf(
-        out,
-        "Degrees of visual angle in the head\u2019s frame, right and up positive; samples of the last attempt "
-        "of each trial. Not valid: of the samples that came; missing: of those due at the measured rate. "
-        "Accuracy: mean distance from a target at rest. RMS from sample to sample, SD and BCEA (square "
-        "degrees, P = %g, Crossland & Rubin 2002) within fixations. Saccades are faster than %g\u00b0/s over "
-        "%g ms (I-VT, Salvucci & Goldberg 2000; Olsen 2012), fixations last %g ms or more; gaps over %g ms "
-        "break them, and what touches one is cut: counted, not measured. Main sequence: V = Vmax (1 \u2212 "
-        "exp(\u2212A / c)) and V = k A^b. Distance to the target as Weier et al. 2016, section 4.2.2: samples "
-        "within "
-        "%g\u00b0 left and right and %g\u00b0 up and down. Age: from a sample\u2019s arrival to the start of "
-        "work on the frame, and to light.",
-        o->bcea_share, o->rules.velocity_deg_s, o->rules.window_ms, o->rules.min_fixation_ms, o->gap_ms,
-        o->region_x_deg, o->region_y_deg);
-    fputs("</p>\n", out);
-}
-
 void report_gaze(const struct report *r)
 {
     const struct gaze_report *g = &r->gaze;
     report_heading(r, "Gaze");
     if (g->record_count + g->latency_count + g->check_count == 0) {
         fputs("<p class=\"note\">No gaze was recorded in any trial.</p>\n", r->out);
-        limits(r);
+        report_gaze_limits(r);
         return;
     }
-    methods(r);
-    limits(r);
+    report_gaze_methods(r);
+    report_gaze_limits(r);
     if (g->record_count) {
         quality_table(r, g->people, g->person_count);
         precision_table(r, g->people, g->person_count);

@@ -204,8 +204,8 @@ static void contrast_row(FILE *out, const struct choice_contrast *x)
         for (int i = 0; i < 3; i++)
             html_cell(out, "td", "\u2013");
     } else {
-        html_cell(out, "td", "%+.1f\u00a0%%", 100 * x->t.estimate);
-        html_cell(out, "td", "%.1f to %.1f\u00a0%%", 100 * x->t.ci_low, 100 * x->t.ci_high);
+        html_cell(out, "td", "%+.1f", 100 * x->t.estimate);
+        html_cell(out, "td", "%.1f to %.1f", 100 * x->t.ci_low, 100 * x->t.ci_high);
         html_cell(out, "td", "t(%.0f) = %.3f", x->t.df, x->t.t);
     }
     html_cell(out, "td", "%s", p);
@@ -224,7 +224,7 @@ static void contrasts_table(const struct report *r)
             "<caption>Levels compared within people: t-test of each person\u2019s difference of shares, in "
             "cells that "
             "are otherwise the same</caption>\n<thead><tr><th scope=\"col\" class=\"word\">levels</th><th "
-            "scope=\"col\">people</th><th scope=\"col\">difference</th><th scope=\"col\">%g&nbsp;%% "
+            "scope=\"col\">people</th><th scope=\"col\">difference, points</th><th scope=\"col\">%g&nbsp;%% "
             "interval</th><th "
             "scope=\"col\">test</th><th scope=\"col\">p</th><th scope=\"col\">p "
             "(Holm)</th></tr></thead>\n<tbody>\n",

@@ -28,7 +28,7 @@ static void number(const struct planned_row *row, const struct plan *plan, doubl
         snprintf(out, 32, any_size ? "%.4g" : "%.2f", value);
 }
 
-static void estimate_cells(FILE *out, const struct planned_row *row, const struct plan *plan)
+static void estimate_cells(FILE *out, const struct planned_row *row, const struct plan *plan, double conf)
 {
     char estimate[32], low[32], high[32];
     const char *unit = !row->share ? row->unit : row->difference ? "points" : "%";
@@ -43,6 +43,8 @@ static void estimate_cells(FILE *out, const struct planned_row *row, const struc
         html_cell(out, "td", "%s%s%s", estimate, unit[0] ? "\u00a0" : "", unit);
     if (isnan(row->low))
         html_cell(out, "td", "\u2013");
+    else if (row->conf != conf)
+        html_cell(out, "td", "%s to %s (%.4g\u00a0%%)", low, high, 100 * row->conf);
     else
         html_cell(out, "td", "%s to %s", low, high);
 }
@@ -54,8 +56,9 @@ static void p_cell(FILE *out, double value)
     html_cell(out, "td", "%s", isnan(value) ? "\u2013" : p);
 }
 
-static void planned_row(FILE *out, const struct planned_row *row, const struct plan *plan)
+static void planned_row(const struct report *r, const struct planned_row *row)
 {
+    FILE *out = r->out;
     fputs("<tr>", out);
     html_cell(out, "th scope=\"row\" class=\"word\"", "%s", row->words[0] ? row->words : "all");
     if (row->people == 0) {
@@ -65,7 +68,7 @@ static void planned_row(FILE *out, const struct planned_row *row, const struct p
         return;
     }
     html_cell(out, "td", "%zu", row->people);
-    estimate_cells(out, row, plan);
+    estimate_cells(out, row, &r->plans.items[row->plan], r->conf);
     html_cell(out, "td class=\"word\"", "%s%s%s", row->test, row->test[0] && row->note[0] ? "; " : "",
               row->note);
     p_cell(out, row->p_value);
@@ -103,10 +106,43 @@ static void planned_table(const struct report *r)
         fputs("</th></tr>\n", out);
         for (size_t i = 0; i < r->planned.row_count; i++)
             if (r->planned.rows[i].plan == plan)
-                planned_row(out, &r->planned.rows[i], &r->plans.items[plan]);
+                planned_row(r, &r->planned.rows[i]);
         fputs("</tbody>\n", out);
     }
     fputs("</table></div>\n", out);
+}
+
+static void family(const struct report *r)
+{
+    size_t tests = r->planned.tested, equality = planned_equality(&r->planned);
+    if (tests)
+        html_printf(r->out, "p (Holm) is adjusted for the %zu %s of this table, the planned family", tests,
+                    tests == 1 ? "test" : "tests");
+    if (equality)
+        html_printf(
+            r->out,
+            "; %zu of them %s of equality by two one-sided tests, with the interval that belongs to "
+            "them. No difference and one beyond the margin cannot both be true, so that the two tests of "
+            "a preference count once (Shaffer 1986). Equality, and a difference beside it, count as "
+            "shown where p (Holm) is at most %.4g",
+            equality, equality == 1 ? "is" : "are", 1 - r->conf);
+    fputs(tests ? ". " : "", r->out);
+}
+
+void report_planned_methods(const struct report *r)
+{
+    size_t tests = r->planned.tested, equality = planned_equality(&r->planned);
+    if (tests == 1)
+        fputs("One test was planned. ", r->out);
+    else if (tests)
+        html_printf(r->out, "The %zu planned tests are one family, with Holm\u2019s adjustment. ", tests);
+    if (equality)
+        html_printf(r->out,
+                    "Equality of preferences within the protocol\u2019s margin was tested by two one-sided "
+                    "tests: exact binomial of one answer each, t-tests of the people\u2019s shares else. %s in "
+                    "the family, where the two tests of a preference count once, as their hypotheses exclude "
+                    "each other (Shaffer 1986); equality is claimed only where Holm\u2019s p is at most %.4g. ",
+                    equality == 1 ? "That test is" : "These tests are", 1 - r->conf);
 }
 
 void report_planned(const struct report *r)
@@ -123,9 +159,7 @@ void report_planned(const struct report *r)
           "the same; shares of choices are tested as in section \u201cChoices\u201d, joined over cells only "
           "where the protocol planned it. Levels are compared in what is otherwise the same. ",
           out);
-    if (r->planned.tested)
-        html_printf(out, "p (Holm) is adjusted for the %zu %s of this table, the planned family. ",
-                    r->planned.tested, r->planned.tested == 1 ? "test" : "tests");
+    family(r);
     fputs("A large p does not show that there is no difference. Everything else in this report was not "
           "planned.",
           out);

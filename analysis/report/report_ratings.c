@@ -130,8 +130,16 @@ static void first_sentence(const struct report *r, const struct rating_question 
                     w->ci_high, w->df, w->t, p[0] == '<' ? "" : "= ", p, q->between_effect.d,
                     q->between_effect.ci_low, q->between_effect.ci_high);
     if (q->unpaired)
-        html_printf(r->out, " %" PRId64 " %s without two ratings of different options left out.", q->unpaired,
-                    q->unpaired == 1 ? "session is" : "sessions are");
+        html_printf(r->out, " %" PRId64 " %s left out.", q->unpaired,
+                    q->unpaired == 1 ? "session without two ratings of different options is"
+                                     : "sessions without two ratings of different options are");
+    if (q->late_first)
+        html_printf(
+            r->out,
+            " %" PRId64 " %s left out, here and where orders are compared as planned: the rating planned "
+            "as the first was given after the second (a flagged trial comes again at the end), when both "
+            "options had been seen, so that there is no first rating.",
+            q->late_first, q->late_first == 1 ? "session is" : "sessions are");
     fputs("</p>\n", r->out);
 }
 

@@ -172,10 +172,12 @@ void report_methods(const struct report *r)
     if (r->choices.cell_count)
         report_choices_methods(r);
     if (r->factors.count)
-        fputs("Levels of a factor were compared in cells that are otherwise the same: between people by "
-              "Fisher\u2019s exact test of one answer each, else by exchanging whole people; within people by "
-              "McNemar\u2019s exact test or Cochran\u2019s Q of one answer each, else by the t-test of each "
-              "person\u2019s difference. ",
+        fputs("Levels of a factor were compared in cells that are otherwise the same, between or within "
+              "people as their trials were planned: between people by Fisher\u2019s exact test of one "
+              "answer each, else by exchanging whole people; within people by McNemar\u2019s exact test "
+              "or Cochran\u2019s Q of one answer each, else by the t-test of each person\u2019s "
+              "difference. The interval of a difference within people of one answer each is Fay and "
+              "Lumbard\u2019s (2021), which agrees with McNemar\u2019s exact test. ",
               r->out);
     if (r->ratings.question_count)
         fputs(
@@ -201,6 +203,7 @@ void report_methods(const struct report *r)
         fputs("d is Cohen\u2019s (d<sub>z</sub>: in the SD of the differences), with exact intervals by the "
               "noncentral t distribution. ",
               r->out);
+    report_planned_methods(r);
     html_printf(r->out,
                 "Intervals cover %g\u00a0%%. Where Holm is not named, p-values are not corrected for "
                 "the number of tests. ",

@@ -241,7 +241,7 @@ static void report_adjusted(const struct report *r)
           "means and their t intervals are over people.</p>\n",
           out);
     report_figure(r, &r->adjusted_figure,
-                  "Each dot is a person\u2019s mean, slightly set off; beside it the mean over people with its "
+                  "Each gray dot is a person\u2019s mean; beside them the mean over people with its "
                   "interval.");
     char ci[48];
     snprintf(ci, sizeof ci, "%g\u00a0%% interval of M", 100 * r->conf);

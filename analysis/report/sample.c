@@ -143,25 +143,29 @@ static bool open_files(struct sample *sample, const char *const *paths, size_t p
         if (!sample->files[i])
             return false;
         sample->file_count++;
+        if (!store_reader_whole(sample->files[i], false)) {
+            snprintf(error, error_size, "%s", store_reader_error(sample->files[i]));
+            return false;
+        }
     }
     return true;
 }
 
-// The same sitting in two files: a copy. Codes and times together are unique within a study.
+// The same sitting in two files: a copy, also where a merge put a laboratory before its code.
 static bool no_copies(const struct sample *sample, char *error, size_t error_size)
 {
     for (size_t i = 0; i < sample->session_count; i++)
         for (size_t j = 0; j < i; j++) {
             const struct sample_session *a = &sample->sessions[i], *b = &sample->sessions[j];
-            if (a->file == b->file || a->seed != b->seed || strcmp(a->started_at, b->started_at) != 0 ||
-                strcmp(a->protocol_sha256, b->protocol_sha256) != 0 ||
-                strcmp(sample->people[a->person].code, sample->people[b->person].code) != 0)
+            const char *code = sample->people[a->person].code, *other = sample->people[b->person].code;
+            bool renamed = strcmp(code, other) != 0;
+            if (a->file == b->file || strcmp(a->sitting, b->sitting) != 0)
                 continue;
             snprintf(error, error_size,
-                     "%s: the session of participant %s is also in %s; leave one of the files out, or it "
+                     "%s: the session of participant %s is also in %s%s%s; leave one of the files out, or it "
                      "counts twice",
-                     store_reader_path(sample->files[a->file]), sample->people[a->person].code,
-                     store_reader_path(sample->files[b->file]));
+                     store_reader_path(sample->files[a->file]), code, store_reader_path(sample->files[b->file]),
+                     renamed ? ", as participant " : "", renamed ? other : "");
             return false;
         }
     return true;

@@ -36,6 +36,7 @@ struct sample_session {
     int64_t segments;
     const char *scenes, *observer; // "" where not known
     const char *planned, *title;   // as store_session_row has them
+    const char *sitting;           // the same
     bool excluded;                 // or its participant
 };
 

@@ -76,12 +76,13 @@ static bool add_session(void *user, const struct store_session_row *row)
         .observer = row->observer,
         .planned = row->planned,
         .title = row->title,
+        .sitting = row->sitting,
     };
     const char **texts[] = {&session.status,        &session.started_at,      &session.ended_at,
                             &session.protocol_name, &session.protocol_sha256, &session.device,
                             &session.driver,        &session.display,         &session.app_version,
                             &session.scenes,        &session.observer,        &session.planned,
-                            &session.title};
+                            &session.title,         &session.sitting};
     if (session.person == SAMPLE_NONE || !sample_keep_all(s, texts, sizeof texts / sizeof texts[0]) ||
         !sample_grow(&s->sessions, s->session_count, sizeof s->sessions[0]))
         return false;
@@ -215,7 +216,7 @@ static bool add_exclusion(void *user, const struct store_exclusion_row *row)
                                  .reason = row->reason,
                                  .by = row->by,
                                  .code = "",
-                                 .ratings_only = strstr(row->rule, ":rating_pair") != NULL};
+                                 .ratings_only = row->ratings_only};
     for (size_t i = 0; i < s->session_count; i++) {
         struct sample_session *session = &s->sessions[i];
         if (session->file != f->file ||

@@ -9,6 +9,7 @@
 #include "analysis/report/choice_factors.h"
 #include "analysis/report/choices.h"
 #include "analysis/report/effects.h"
+#include "analysis/report/figure_file.h"
 #include "analysis/report/frames.h"
 #include "analysis/report/frames_pairs.h"
 #include "analysis/report/gaze_over.h"
@@ -60,7 +61,7 @@ struct report {
     struct figure_pair choices_figure, three_figure, frames_figure, ratings_figures[REPORT_QUESTIONS],
         factorial_figures[REPORT_QUESTIONS], likert_figures[REPORT_QUESTIONS];
     struct bench bench; // without rows where no file was given
-    struct figure_pair bench_figures[BENCH_SCENES];
+    struct figure_pair bench_figures[BENCH_FIGURES];
     struct figure_pair threshold_figures[REPORT_STAIRCASES], adjusted_figure;
 };
 
@@ -69,10 +70,11 @@ void report_sample(const struct report *r);
 void report_methods(const struct report *r);
 void report_planned(const struct report *r);         // what the protocol planned, with its results
 void report_choices_methods(const struct report *r); // sentences
+void report_planned_methods(const struct report *r); // sentences
 void report_choices(const struct report *r);
 void report_equivalence(const struct report *r);    // by the protocol's margin
 void report_choice_three(const struct report *r);   // where "equal" was an answer
-void report_choice_factors(const struct report *r); // levels compared, where people did not answer several
+void report_choice_factors(const struct report *r); // levels compared, but for several answers within people
 void report_people(const struct report *r);         // cells with several answers per person
 void report_cell_words(const struct choice_cell *cell, char out[256]);
 void report_toggles(const struct report *r);
@@ -90,12 +92,20 @@ bool report_load_frames(struct report *r, char *error, size_t error_size);
 void report_frames(const struct report *r);
 void report_effects(const struct report *r); // on choices, that are no preference
 void report_gaze(const struct report *r);
+void report_gaze_methods(const struct report *r); // of report_gaze()
+void report_gaze_limits(const struct report *r);
 void report_checks(const struct report *r);         // null and catch trials
 void report_what_if(const struct report *r);        // the same tests under other exclusions
 void report_what_if_scales(const struct report *r); // its rows of thresholds and JOD
+void report_what_if_notes(const struct report *r);  // what stands below it
 bool report_quality(const struct report *r, char *error, size_t error_size);
 void report_bench(const struct report *r);
 bool report_draw_bench(struct report *r, char *error, size_t error_size);
+// Every figure, for both widths; report_free_figures() frees them, also after false.
+bool report_draw(struct report *r, char *error, size_t error_size);
+void report_free_figures(struct report *r);
+// As files, numbered in the report's order from 1.
+bool report_write_figures(const struct report *r, struct figure_files *files, char *error, size_t error_size);
 void report_audit(const struct report *r); // every frame accounted for
 void report_definitions(const struct report *r);
 

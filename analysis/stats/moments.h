@@ -9,7 +9,7 @@
 struct stat_moments {
     size_t n;
     double mean;
-    double sd;        // of the sample, n - 1
+    double sd;        // of the sample, n - 1; 0 also where values differ by rounding only, 10 / 2^52 of them
     double std_error; // sd / sqrt(n)
 };
 

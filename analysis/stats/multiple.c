@@ -1,5 +1,7 @@
 // Holm, S. (1979), Scandinavian Journal of Statistics 6, 65-70; Hochberg, Y. (1988), Biometrika 75, 800-802;
-// Benjamini, Y. & Hochberg, Y. (1995), J. Royal Statistical Society B 57, 289-300.
+// Benjamini, Y. & Hochberg, Y. (1995), J. Royal Statistical Society B 57, 289-300; Shaffer, J. P. (1986), J.
+// American Statistical Association 81, 826-831: Holm's steps, each with the largest number of hypotheses that
+// can still be true given those rejected so far, instead of all that are left.
 #include "analysis/stats/multiple.h"
 
 #include <math.h>
@@ -43,6 +45,23 @@ void stat_adjust_holm(const double *p, size_t n, double *out)
         most = fmax(most, (double)(count - i) * tests[i].p);
         out[tests[i].index] = fmin(1, most);
     }
+    free(tests);
+}
+
+void stat_adjust_exclusive(const double *p, const size_t *set, size_t n, double *out)
+{
+    size_t count, sets = 0;
+    struct test *tests = sorted(p, n, out, &count);
+    size_t *left = calloc(n + 1, sizeof *left);
+    double most = 0;
+    for (size_t i = 0; left && i < count; i++)
+        sets += left[set[tests[i].index]]++ == 0;
+    for (size_t i = 0; left && i < count; i++) {
+        most = fmax(most, (double)sets * tests[i].p);
+        out[tests[i].index] = fmin(1, most);
+        sets -= --left[set[tests[i].index]] == 0;
+    }
+    free(left);
     free(tests);
 }
 

@@ -9,7 +9,11 @@
 
 // The chance of any false rejection stays under alpha, whatever ties the tests to each other.
 void stat_adjust_holm(const double *p, size_t n, double *out);
-// The same for tests that are independent or positively dependent; never larger than Holm's.
+// The same where hypotheses of one set exclude each other, such as "no difference" and "a difference beyond the
+// margin": one of them at most is true, so that a set counts once while it has a test left. `set` holds a
+// number below n for each; with sets of one test each it is Holm's, and never larger than it.
+void stat_adjust_exclusive(const double *p, const size_t *set, size_t n, double *out);
+// As Holm's for tests that are independent or positively dependent; never larger.
 void stat_adjust_hochberg(const double *p, size_t n, double *out);
 // The expected share of false rejections among all rejections (Benjamini and Hochberg); same assumption.
 void stat_adjust_bh(const double *p, size_t n, double *out);

@@ -4,36 +4,29 @@
 // between break points on both leave nothing sharp within one panel.
 #include "analysis/stats/noncentral_t.h"
 
+#include "analysis/stats/panel.h"
+
 #include <Rmath.h>
 #include <math.h>
 #include <stdbool.h>
-#include <stddef.h>
 
 enum { PANELS = 12, STEPS = 200 };
 
-// 16 points: Abramowitz & Stegun (1964), table 25.4.
-static const double node[] = {0.095012509837637440185, 0.281603550779258913230, 0.458016777657227386342,
-                              0.617876244402643748447, 0.755404408355003033895, 0.865631202387831743880,
-                              0.944575023073232576078, 0.989400934991649932596};
-static const double weight[] = {0.189450610455068496285, 0.182603415044923588867, 0.169156519395002538189,
-                                0.149595988816576732081, 0.124628971255533872052, 0.095158511682492784810,
-                                0.062253523938647892863, 0.027152459411754094852};
+struct problem {
+    double t, df, ncp;
+};
 
-static double integrand(double s, double t, double df, double ncp)
+static double integrand(double s, const void *user)
 {
-    return pnorm(t * s - ncp, 0, 1, true, false) * 2 * df * s * dchisq(df * s * s, df, false);
+    const struct problem *p = user;
+    return pnorm(p->t * s - p->ncp, 0, 1, true, false) * 2 * p->df * s * dchisq(p->df * s * s, p->df, false);
 }
 
-static double segment(double low, double high, double t, double df, double ncp)
+static double segment(double low, double high, const struct problem *problem)
 {
-    double sum = 0, half = (high - low) / (2 * PANELS);
-    for (int panel = 0; panel < PANELS; panel++) {
-        double centre = low + (2 * panel + 1) * half;
-        for (size_t i = 0; i < sizeof node / sizeof node[0]; i++)
-            sum += weight[i] * half *
-                   (integrand(centre - half * node[i], t, df, ncp) +
-                    integrand(centre + half * node[i], t, df, ncp));
-    }
+    double sum = 0, step = (high - low) / PANELS;
+    for (int panel = 0; panel < PANELS; panel++)
+        sum += stat_panel(integrand, problem, low + panel * step, low + (panel + 1) * step);
     return sum;
 }
 
@@ -49,7 +42,7 @@ double stat_noncentral_t_lower(double t, double df, double ncp)
     double sum = 0;
     for (int i = 0; i < 4; i++)
         if (breaks[i + 1] > breaks[i])
-            sum += segment(breaks[i], breaks[i + 1], t, df, ncp);
+            sum += segment(breaks[i], breaks[i + 1], &(struct problem){t, df, ncp});
     return fmin(1, sum);
 }
 

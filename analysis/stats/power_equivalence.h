@@ -13,7 +13,7 @@
 double stat_binomial_equivalence_power(int64_t n, double margin, double p, double alpha);
 
 // The people that it takes, `stays` within the first `most` sizes, which are all looked at. Both are 0 where
-// the largest size has not the power, and for bad input.
+// the largest size has not the power or `stays` lies in the last tenth, and for bad input.
 struct stat_sample_size stat_binomial_equivalence_size(double margin, double p, double alpha, double power,
                                                        int64_t most);
 

@@ -59,28 +59,29 @@ static int finish(const struct command *command, const struct sample *sample, co
     return command_finish(command);
 }
 
-static int run(const struct command *command, int argc, char **argv)
+static int analyse(const struct command *command, const struct study_arguments *arguments,
+                   struct sample *sample)
 {
-    struct study_arguments arguments;
-    struct sample sample;
-    int code = study_arguments_load(command, argc, argv, false, &arguments, &sample);
-    if (code >= 0)
-        return code;
+    int code;
     char error[SAMPLE_ERROR_SIZE];
     struct ratings r;
-    if (!ratings_load(&r, &sample, arguments.conf, false, error, sizeof error)) {
+    if (!ratings_load(&r, sample, arguments->conf, false, error, sizeof error)) {
         code = command_fail(command, EXIT_FAILED, "%s", error);
     } else {
         bool ok = true;
-        if (arguments.json)
-            print_json(&sample, &r);
+        if (r.factorials.count && arguments->json)
+            print_json(sample, &r);
         else if (r.factorials.count)
-            ok = print_text(&sample, &r);
-        code = ok ? finish(command, &sample, &r) : command_fail(command, EXIT_FAILED, "not enough memory");
+            ok = print_text(sample, &r);
+        code = ok ? finish(command, sample, &r) : command_fail(command, EXIT_FAILED, "not enough memory");
     }
     ratings_free(&r);
-    sample_free(&sample);
     return code;
+}
+
+static int run(const struct command *command, int argc, char **argv)
+{
+    return study_arguments_run(command, argc, argv, analyse);
 }
 
 const struct command command_anova = {"anova", "analysis of variance of ratings over factors", help, run};

@@ -45,11 +45,15 @@ static bool write_readme(struct bids *b)
         "direction\n"
         "  for both), every one as the tracker sent it; directions of gaze in degrees, right and up positive;\n"
         "- `*_physioevents.tsv.gz`: fixations and saccades found in them.\n\n"
-        "`n/a` is a missing value. `excluded` says whether a rule took a row out; such rows are here all the "
-        "same.\n"
-        "Tabs and line ends in texts became spaces. Frames, checks of the tracker and the protocol's text are "
-        "in\n"
-        "the Psych-DS export, which has the same numbers of sessions, trials and conditions.\n",
+        "`n/a` is a missing value. `excluded` says whether a rule takes a row out, and `excluded_rules` which; "
+        "such\n"
+        "rows are here all the same. Trials that were interrupted left rows of several `attempt`s; fixations "
+        "and\n"
+        "saccades are of the last attempt, and of the time between trials. Tabs and line ends in texts became "
+        "spaces.\n"
+        "Frames, checks of the tracker, notes and other events, image errors and the protocol's text are in "
+        "the\n"
+        "Psych-DS export, which has the same numbers of sessions, trials and conditions.\n",
         out);
     if (b->counts.samples_without_rate)
         fprintf(out,

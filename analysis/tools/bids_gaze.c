@@ -1,6 +1,7 @@
 // The tracker's samples, one pass, run by run and eye by eye: physio.tsv.gz, and the fixations and saccades
-// found in them as `fovstats gaze --events` finds them by default: physioevents.tsv.gz. Both have no header. Of
-// a run the sampling frequency is known at its end only, so the JSON files come last.
+// found in them as `fovstats gaze --events` finds them by default, of last attempts, and those between trials:
+// physioevents.tsv.gz. Both have no header. Of a run the sampling frequency is known at its end only, so the
+// JSON files come last.
 #include "analysis/tools/bids_gaze.h"
 #include "analysis/gaze/track.h"
 #include "analysis/report/gaze.h"
@@ -18,7 +19,8 @@ struct eye {
     size_t index;
     struct gzip_file *samples, *events;
     struct gaze_track track;
-    int64_t trial; // 0: none
+    int64_t trial;   // 0: none
+    bool superseded; // of an attempt at the trial that was not the last
 };
 
 struct gaze {
@@ -34,6 +36,7 @@ struct gaze {
 
 static const char *const source[GAZE_COLUMNS] = {[GAZE_SEGMENT] = "segment_id",
                                                  [GAZE_TRIAL] = "trial_id",
+                                                 [GAZE_ATTEMPT] = "attempt",
                                                  [GAZE_DEVICE] = "device_ns",
                                                  [GAZE_HOST] = "host_ns",
                                                  [GAZE_EYE] = "eye",
@@ -83,6 +86,8 @@ static void write_event(void *user, const struct gaze_event *e, const struct gaz
     struct gaze *g = eye->gaze;
     char seconds[CELL_SECONDS_SIZE];
     FILE *out = g->out;
+    if (eye->superseded)
+        return;
     if (!open_gzip(g->bids, g->run, eye->index, "physioevents.tsv.gz", &eye->events)) {
         g->failed = true;
         return;
@@ -106,6 +111,7 @@ static bool leave_run(struct gaze *g)
     for (size_t i = 0; i < BIDS_EYES; i++) {
         gaze_track_begin(&g->eyes[i].track, NULL);
         g->eyes[i].trial = 0;
+        g->eyes[i].superseded = false;
         ok = close_gzip(g->bids, &g->eyes[i].samples) && ok;
         ok = close_gzip(g->bids, &g->eyes[i].events) && ok;
     }
@@ -134,8 +140,17 @@ static bool write_sample(struct gaze *g, struct eye *eye, const struct store_cel
     cell_write_tsv(out, &cells[g->at[GAZE_CONFIDENCE]]);
     fputc('\t', out);
     cell_write_tsv(out, &cells[g->at[GAZE_TRIAL]]);
+    fputc('\t', out);
+    cell_write_tsv(out, &cells[g->at[GAZE_ATTEMPT]]);
     fputc('\n', out);
     return open_gzip(g->bids, g->run, eye->index, "physio.tsv.gz", &eye->samples) && send_line(g, eye->samples);
+}
+
+// As the analysis of the gaze has it (report/gaze_samples.c).
+static bool is_superseded(const struct gaze *g, int64_t trial_id, int64_t host_ns)
+{
+    const struct bids_trial *trial = bids_find_trial(g->bids, trial_id);
+    return trial && (trial->run != g->run || host_ns < trial->started_ns);
 }
 
 static bool take_sample(struct gaze *g, const struct store_cell *cells)
@@ -146,6 +161,7 @@ static bool take_sample(struct gaze *g, const struct store_cell *cells)
     struct bids_recording *recording = &g->recordings[g->run * BIDS_EYES + index];
     const struct store_cell *trial = &cells[g->at[GAZE_TRIAL]];
     int64_t trial_id = trial->kind == STORE_CELL_INTEGER ? trial->integer : 0;
+    bool superseded = is_superseded(g, trial_id, cells[g->at[GAZE_HOST]].integer);
     if (recording->samples == 0) {
         if (!gaze_quality_init(&recording->quality))
             return false;
@@ -154,9 +170,10 @@ static bool take_sample(struct gaze *g, const struct store_cell *cells)
     recording->samples++;
     if (!eye->samples)
         gaze_track_begin(&eye->track, &recording->quality);
-    else if (trial_id != eye->trial)
+    else if (trial_id != eye->trial || superseded != eye->superseded)
         gaze_track_break(&eye->track);
     eye->trial = trial_id;
+    eye->superseded = superseded;
     gaze_track_sample(&eye->track, cells[g->at[GAZE_DEVICE]].integer, real(&cells[g->at[GAZE_X]]),
                       real(&cells[g->at[GAZE_Y]]), cells[g->at[GAZE_VALID]].integer == 1);
     return !g->failed && write_sample(g, eye, cells);

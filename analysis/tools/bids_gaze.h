@@ -10,6 +10,7 @@ enum { BIDS_EYES = 3 }; // left, right, one direction for both
 enum gaze_column {
     GAZE_SEGMENT,
     GAZE_TRIAL,
+    GAZE_ATTEMPT,
     GAZE_DEVICE,
     GAZE_HOST,
     GAZE_EYE,

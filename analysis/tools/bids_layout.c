@@ -101,6 +101,7 @@ static bool add_trial(void *user, bool header, const struct store_cell *cells, s
         return false;
     b->trials[b->trial_count++] =
         (struct bids_trial){.id = cell_integer(cells, count, "trial_id", 0),
+                            .started_ns = cell_integer(cells, count, "started_ns", INT64_MAX),
                             .ended_ns = cell_integer(cells, count, "ended_ns", 0),
                             .run = bids_find_run(b, cell_integer(cells, count, "segment_id", 0))};
     return true;

@@ -6,8 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const fixed[] = {"participant_id", "participant_code", "participant_number",
-                                    "participant_kind"};
+static const char *const fixed[] = {"participant_id",   "participant_code", "participant_number",
+                                    "participant_kind", "excluded",         "excluded_stricter",
+                                    "excluded_rules"};
 enum { FIXED = sizeof fixed / sizeof fixed[0] };
 
 struct value {
@@ -98,7 +99,8 @@ static bool write_person(void *user, bool header, const struct store_cell *cells
         return true;
     p->bids->counts.participants++;
     fprintf(p->out, "sub-%s", p->bids->people.items[person].label);
-    static const char *const columns[] = {"participant_id", "participant_number", "participant_kind"};
+    static const char *const columns[] = {"participant_id", "participant_number", "participant_kind",
+                                          "excluded",       "excluded_stricter",  "excluded_rules"};
     for (size_t i = 0; i < sizeof columns / sizeof columns[0]; i++) {
         fputc('\t', p->out);
         cell_write_tsv(p->out, cell_find(cells, count, columns[i]));

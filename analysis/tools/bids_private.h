@@ -37,8 +37,8 @@ struct bids_run {
 };
 
 struct bids_trial {
-    int64_t id, ended_ns;
-    size_t run; // SIZE_MAX: never started
+    int64_t id, started_ns, ended_ns; // of its last attempt
+    size_t run;                       // SIZE_MAX: never started
 };
 
 struct bids_condition {

@@ -19,13 +19,18 @@ static const struct column sample_columns[] = {
     {"valid", NULL, "Whether the tracker had a direction: 1 yes, 0 no."},
     {"confidence", NULL, "The tracker's confidence, 0 to 1."},
     {"trial_id", NULL, "The trial the sample belongs to; n/a between trials."},
+    {"attempt", NULL,
+     "Attempt at the trial, from 1; an interrupted trial begins anew with the next. n/a: of no trial, from "
+     "before its first attempt, or of an interrupted attempt that is not known."},
     {NULL, NULL, NULL},
 };
 
 static const struct column event_columns[] = {
     {"onset", "ns", "Time of the first sample, as timestamp in the recording. " CLOCK},
     {"duration", "s", "From the first sample to the last one."},
-    {"trial_type", NULL, "fixation or saccade."},
+    {"trial_type", NULL,
+     "fixation or saccade; of an interrupted trial only those of its last attempt. Between trials there are "
+     "some too."},
     {"x_coordinate", "deg", "A fixation's mean, a saccade's last sample, " HEAD "."},
     {"y_coordinate", "deg", "The same upwards."},
     {"amplitude", "deg", "Angle between a saccade's first and last sample; n/a for a fixation."},
@@ -99,11 +104,13 @@ static bool describe_events(struct bids *b, size_t run, size_t eye)
     FILE *out = bids_open(b, name);
     if (!out)
         return false;
-    snprintf(
-        text, sizeof text,
-        "Fixations and saccades found by fovstats " FOVSTUDY_VERSION ", not by the tracker: I-VT (Salvucci & "
-        "Goldberg 2000; Olsen 2012), saccades faster than %g deg/s over %g ms, fixations of at least %g ms.",
-        options.rules.velocity_deg_s, options.rules.window_ms, options.rules.min_fixation_ms);
+    snprintf(text, sizeof text,
+             "Fixations and saccades found by fovstats " FOVSTUDY_VERSION
+             ", not by the tracker: I-VT (Salvucci & "
+             "Goldberg 2000; Olsen 2012), saccades faster than %g deg/s over %g ms, fixations of at least %g "
+             "ms; a peak velocity is over %g ms, at least between a sample's neighbours.",
+             options.rules.velocity_deg_s, options.rules.window_ms, options.rules.min_fixation_ms,
+             options.rules.peak_ms);
     struct json json = {out, false};
     json_open(&json, NULL, '{');
     json_text(&json, "TaskName", task_of(b, run));

@@ -4,9 +4,11 @@
 #include <inttypes.h>
 #include <string.h>
 
-static const char *const columns[] = {
-    "session_status", "protocol", "protocol_sha256", "seed",       "started_at", "ended_at",  "consent_version",
-    "device",         "driver",   "display",         "refresh_hz", "width_px",   "height_px", "fov_deg"};
+static const char *const columns[] = {"session_status", "protocol", "protocol_sha256", "seed",
+                                      "started_at",     "ended_at", "consent_version", "device",
+                                      "driver",         "display",  "refresh_hz",      "width_px",
+                                      "height_px",      "fov_deg",  "excluded",        "excluded_stricter",
+                                      "excluded_rules"};
 enum { COLUMNS = sizeof columns / sizeof columns[0] };
 
 struct sessions {

@@ -23,10 +23,11 @@ struct file {
 };
 
 static const char *const event_columns[] = {
-    "onset",    "duration",   "trial_type",      "trial_id",   "ordinal",
-    "block",    "trial_kind", "scene",           "factors",    "option_a",
-    "option_b", "test_slot",  "first_shown",     "shown_slot", "trial_status",
-    "attempt",  "parameter",  "parameter_value", "excluded",   "excluded_stricter"};
+    "onset",         "duration",   "trial_type",      "trial_id",   "ordinal",
+    "block",         "trial_kind", "scene",           "factors",    "option_a",
+    "option_b",      "test_slot",  "first_shown",     "shown_slot", "trial_status",
+    "attempt",       "parameter",  "parameter_value", "excluded",   "excluded_stricter",
+    "excluded_rules"};
 
 static const char *const answer_columns[] = {"answer_time",
                                              "answer",
@@ -37,6 +38,7 @@ static const char *const answer_columns[] = {"answer_time",
                                              "scene",
                                              "factors",
                                              "trial_status",
+                                             "attempt",
                                              "question",
                                              "chosen",
                                              "chosen_slot",
@@ -58,7 +60,8 @@ static const char *const answer_columns[] = {"answer_time",
                                              "test_condition_id",
                                              "reference_condition_id",
                                              "excluded",
-                                             "excluded_stricter"};
+                                             "excluded_stricter",
+                                             "excluded_rules"};
 
 static void write_seconds(FILE *out, const struct store_cell *cell)
 {

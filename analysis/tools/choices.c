@@ -29,7 +29,9 @@ static const char help[] =
     "  --conf C         confidence of intervals and null regions (0.95)\n"
     "  --margin M       tests whether the preference lies within P - M to P + M, by two one-sided tests; by "
     "default\n"
-    "                   the margin that the protocol planned, about one half\n"
+    "                   the margin that the protocol planned, about one half; equality is claimed by Holm's p "
+    "over\n"
+    "                   the cells\n"
     "  --simulated      analyse simulated sessions, which are left out otherwise\n"
     "  --protocol N     analyse the sessions of this protocol; else of the one with most sessions\n"
     "  --json           one object with the cells in an array\n"
@@ -41,9 +43,9 @@ static const char help[] =
     "a\n"
     "logistic mixed model; the binomial test of all answers stands below as the papers have it. Holm's p is\n"
     "adjusted for all cells with an answer.\n"
-    "Levels of a factor: between people Fisher's exact test of one answer each, else people are exchanged;\n"
-    "within people McNemar's test or Cochran's Q of one answer each, else the t-test of each person's "
-    "difference.\n"
+    "Levels of a factor, between or within people as their trials were planned: between people Fisher's\n"
+    "exact test of one answer each, else people are exchanged; within people McNemar's test or Cochran's Q\n"
+    "of one answer each, else the t-test of each person's difference. Who does not fit is left out and said.\n"
     "Last, effects on choices that are no preference: of side, order, place in the session, previous answer,\n"
     "switches and viewing time, by person, with Holm's p over these checks.\n";
 
@@ -189,12 +191,13 @@ static bool print_json(const struct sample *sample, const struct choices *c, con
     choices_factors_json(&json, &parts->factors);
     bool ok = choices_three_json(&json, c);
     if (!isnan(parts->margin))
-        choices_equivalence_json(&json, c, parts->margin);
+        ok = choices_equivalence_json(&json, c, parts->margin) && ok;
     choices_effects_json(&json, &parts->effects);
     json_integer(&json, "answers", c->answers);
     json_number(&json, "toggles_mean", c->toggles.mean);
     json_number(&json, "toggles_sd", c->toggles.sd);
     json_integer(&json, "chosen_first_shown", c->chosen_first);
+    json_integer(&json, "first_shown_known", c->first_known);
     json_integer(&json, "chosen_slot_a", c->chosen_a);
     json_open(&json, "left_out", '{');
     json_integer(&json, "excluded", c->excluded);

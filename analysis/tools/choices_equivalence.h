@@ -5,7 +5,8 @@
 #include "analysis/report/choices.h"
 #include "analysis/tools/json.h"
 
-bool choices_equivalence_print(const struct choices *choices, double margin); // false where memory ran out
-void choices_equivalence_json(struct json *json, const struct choices *choices, double margin); // "equivalence"
+// False where memory ran out. The member is "equivalence".
+bool choices_equivalence_print(const struct choices *choices, double margin);
+bool choices_equivalence_json(struct json *json, const struct choices *choices, double margin);
 
 #endif

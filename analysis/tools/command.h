@@ -20,6 +20,6 @@ int frames_audit(const struct command *command, struct sample *sample, bool json
 
 extern const struct command command_binom, command_choices, command_ratings, command_frames, command_report;
 extern const struct command command_anova, command_export, command_gaze, command_jod, command_merge;
-extern const struct command command_power, command_thresholds;
+extern const struct command command_planned, command_power, command_thresholds;
 
 #endif

@@ -25,6 +25,9 @@ static const char help[] =
     "  bids      answers, what was shown when, samples of the eye tracker, fixations and saccades, by "
     "subject,\n"
     "            session and run (BIDS 1.11.1, Eye-Tracking-BIDS)\n"
+    "What rules take out stays in both; its rows say so (excluded). BIDS has no frames, checks of the tracker, "
+    "notes\n"
+    "and other events, image errors, nor the protocol's text.\n"
     "Several files are joined as fovstats merge joins them: a session that is in several of them counts once.\n"
     "  --lab NAME=DB    a file whose participants become NAME-CODE\n"
     "  -o DIR           must not exist; written whole or not at all\n"
@@ -110,8 +113,10 @@ static bool check(struct job *job, struct store_reader *reader)
 {
     const char *name = job->inputs[0].path;
     struct found found = {0};
-    if (!store_read_sessions(reader, look, &found))
-        return fail(job, name, store_reader_error(reader));
+    if (!store_reader_whole(reader, true) || !store_read_sessions(reader, look, &found)) {
+        snprintf(job->error, sizeof job->error, "%s", store_reader_error(reader));
+        return false;
+    }
     job->sessions = found.sessions;
     if (found.sessions == 0)
         return fail(job, name, "the study is empty: no session was recorded");

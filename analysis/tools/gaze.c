@@ -16,15 +16,18 @@ static const char help[] =
     "All angles are degrees of visual angle in the head's frame: right and up positive.\n"
     "\n"
     "  not valid  of the samples that came; missing: of the samples due at the nominal rate\n"
-    "  accuracy   mean distance from a target at rest, and the mean offset; needs trials with a fixation "
-    "cross\n"
-    "  RMS-S2S    root mean square from sample to sample; SD about the mean: both within fixations, "
-    "horizontal,\n"
-    "             vertical, both\n"
+    "  accuracy   mean distance of all valid samples from a target at rest (a fixation cross), wherever they "
+    "lie and\n"
+    "             saccades included, and the mean offset; of one eye, from where that eye sees the target\n"
+    "  RMS-S2S    root mean square from sample to sample; SD about the mean: both within fixations, in trials "
+    "without\n"
+    "             a moving target, horizontal, vertical, both\n"
     "  BCEA       2 k pi SDh SDv sqrt(1 - r^2), k = -ln(1 - P): the ellipse of a share P (Crossland & Rubin "
     "2002)\n"
     "  cut        events at a gap or a trial's end; their duration and amplitude are not known\n"
-    "  Vmax, c    V = Vmax (1 - exp(-A / c)) of peak velocity and amplitude; k, b: V = k A^b\n"
+    "  Vmax, c    V = Vmax (1 - exp(-A / c)) of peak velocity and amplitude; k, b: V = k A^b. Vmax is not "
+    "estimable\n"
+    "             of trackers slower than 114 Hz, c, k and b of those slower than 235 Hz\n"
     "\n"
     "  --events           instead: every fixation and saccade, as CSV\n"
     "  --method M         ivt (default): by velocity; idt: by dispersion, fixations only (Salvucci & Goldberg "
@@ -32,6 +35,7 @@ static const char help[] =
     "  --velocity V       ivt: a saccade is faster than V deg/s; default 30 (Olsen 2012)\n"
     "  --window-ms T      ivt: velocity between the samples at most T/2 before and after; default 20 (Olsen "
     "2012)\n"
+    "  --peak-ms T        ivt: the same of a saccade's peak velocity; default 8\n"
     "  --dispersion D     idt: (max x - min x) + (max y - min y) of a fixation is at most D degrees; default "
     "1\n"
     "  --min-fixation-ms T  default 60 (ivt, Olsen 2012), 100 (idt, Salvucci & Goldberg 2000)\n"
@@ -40,8 +44,9 @@ static const char help[] =
     "2012)\n"
     "  --gap-ms T         longer without a sample breaks an event; default 50\n"
     "  --rate HZ          the tracker's nominal rate; default: as measured\n"
-    "  --region X,Y       samples compared with the target: within X degrees left and right, Y up and down;\n"
-    "                     default 10.3,11.68 (Weier et al. 2016, section 4.2.2)\n"
+    "  --region X,Y       samples whose distance to the target counts: within X degrees left and right, Y up "
+    "and\n"
+    "                     down; default 10.3,11.68 (Weier et al. 2016, section 4.2.2)\n"
     "  --bcea P           share of the ellipse; default 0.682\n"
     "  --conf C           confidence of intervals; default 0.95\n"
     "  --simulated        analyse simulated sessions, which are left out otherwise\n"
@@ -51,16 +56,17 @@ static const char help[] =
 struct own {
     bool events;
     const char *method, *region;
-    double velocity, window, dispersion, fixation, saccade, merge_ms, merge_deg, gap, rate,
+    double velocity, window, peak, dispersion, fixation, saccade, merge_ms, merge_deg, gap, rate,
         bcea; // NaN: not given
 };
 
-enum { OWN = 13 };
+enum { OWN = 14 };
 
 static void list_options(struct own *own, struct option out[OWN])
 {
     *own = (struct own){.velocity = NAN,
                         .window = NAN,
+                        .peak = NAN,
                         .dispersion = NAN,
                         .fixation = NAN,
                         .saccade = NAN,
@@ -74,6 +80,7 @@ static void list_options(struct own *own, struct option out[OWN])
                                         {"--region", OPTION_TEXT, &own->region},
                                         {"--velocity", OPTION_NUMBER, &own->velocity},
                                         {"--window-ms", OPTION_NUMBER, &own->window},
+                                        {"--peak-ms", OPTION_NUMBER, &own->peak},
                                         {"--dispersion", OPTION_NUMBER, &own->dispersion},
                                         {"--min-fixation-ms", OPTION_NUMBER, &own->fixation},
                                         {"--min-saccade-ms", OPTION_NUMBER, &own->saccade},
@@ -124,6 +131,7 @@ static int read_options(const struct command *command, const struct own *own, st
         double *value;
     } numbers[] = {{"--velocity", own->velocity, 0, true, 1e4, &rules->velocity_deg_s},
                    {"--window-ms", own->window, 0, false, 1000, &rules->window_ms},
+                   {"--peak-ms", own->peak, 0, false, 1000, &rules->peak_ms},
                    {"--dispersion", own->dispersion, 0, true, 180, &rules->dispersion_deg},
                    {"--min-fixation-ms", own->fixation, 0, false, 1e5, &rules->min_fixation_ms},
                    {"--min-saccade-ms", own->saccade, 0, false, 1e4, &rules->min_saccade_ms},
@@ -157,27 +165,29 @@ static int print(const struct command *command, const struct sample *sample, con
     return ok ? command_finish(command) : command_fail(command, EXIT_FAILED, "not enough memory");
 }
 
+#define NO_ROOM "there is no room for the events on the disk of temporary files; make some"
+
 static int analyse(const struct command *command, struct sample *sample, struct gaze_options *options,
                    bool events, bool json)
 {
     char error[SAMPLE_ERROR_SIZE];
     struct gaze_report gaze = {.record_count = 0};
     struct gaze_events list = {.sample = sample, .as_json = json};
-    int code;
+    int code = -1;
     if (events) {
         options->each = gaze_events_each;
         options->user = &list;
-        gaze_events_begin(&list);
+        if (!gaze_events_begin(&list))
+            return command_fail(command, EXIT_FAILED, NO_ROOM);
     }
-    bool loaded = gaze_load(&gaze, sample, options, error, sizeof error);
-    if (events)
-        gaze_events_end(&list);
-    if (!loaded)
+    if (!gaze_load(&gaze, sample, options, error, sizeof error))
         code = command_fail(command, EXIT_FAILED, "%s", error);
     else if (gaze.record_count + gaze.check_count + gaze.latency_count == 0)
         code = command_fail(command, EXIT_FAILED, "%s: no gaze sample was recorded in any session that counts",
                             store_reader_path(sample->files[0]));
-    else
+    if (events && !gaze_events_end(&list, code < 0) && code < 0)
+        code = command_fail(command, EXIT_FAILED, NO_ROOM);
+    if (code < 0)
         code = events ? command_finish(command) : print(command, sample, &gaze, json);
     gaze_free(&gaze);
     return code;

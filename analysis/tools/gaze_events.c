@@ -7,50 +7,56 @@
 #include <math.h>
 #include <string.h>
 
-void gaze_events_begin(struct gaze_events *events)
+bool gaze_events_begin(struct gaze_events *events)
 {
-    events->json = (struct json){stdout, false};
+    FILE *out = tmpfile();
+    events->json = (struct json){out, false};
+    if (!out)
+        return false;
     if (!events->as_json) {
-        puts("participant,session,trial,eye,kind,start_ns,duration_ms,x_deg,y_deg,amplitude_deg,peak_deg_s,cut,"
-             "simulated");
-        return;
+        fputs(
+            "participant,session,trial,eye,kind,start_ns,duration_ms,x_deg,y_deg,amplitude_deg,peak_deg_s,cut,"
+            "simulated\n",
+            out);
+        return true;
     }
     json_open(&events->json, NULL, '{');
     study_title_json(&events->json, events->sample);
     json_open(&events->json, "events", '[');
+    return true;
 }
 
-static void field(double value)
+static void field(FILE *out, double value)
 {
     if (isfinite(value))
-        printf("%.6g", value);
-    putchar(',');
+        fprintf(out, "%.6g", value);
+    fputc(',', out);
 }
 
 // A code may hold a comma or a quotation mark.
-static void code_field(const char *code)
+static void code_field(FILE *out, const char *code)
 {
-    putchar('"');
+    fputc('"', out);
     for (; *code; code++) {
         if (*code == '"')
-            putchar('"');
-        putchar(*code);
+            fputc('"', out);
+        fputc(*code, out);
     }
-    fputs("\",", stdout);
+    fputs("\",", out);
 }
 
-static void csv_line(const struct sample *sample, const struct sample_session *session, int64_t trial_id,
-                     char eye, const struct gaze_event *event)
+static void csv_line(FILE *out, const struct sample *sample, const struct sample_session *session,
+                     int64_t trial_id, char eye, const struct gaze_event *event)
 {
-    code_field(sample->people[session->person].code);
-    printf("%" PRId64 ",%" PRId64 ",%s,%s,%" PRId64 ",", session->id, trial_id, gaze_eye_words(eye),
-           event->kind == GAZE_FIXATION ? "fixation" : "saccade", event->start_ns);
-    field((double)(event->end_ns - event->start_ns) / 1e6);
-    field(event->x_deg);
-    field(event->y_deg);
-    field(event->amplitude_deg);
-    field(event->peak_deg_s);
-    printf("%d,%d\n", event->cut, sample->simulated);
+    code_field(out, sample->people[session->person].code);
+    fprintf(out, "%" PRId64 ",%" PRId64 ",%s,%s,%" PRId64 ",", session->id, trial_id, gaze_eye_words(eye),
+            event->kind == GAZE_FIXATION ? "fixation" : "saccade", event->start_ns);
+    field(out, (double)(event->end_ns - event->start_ns) / 1e6);
+    field(out, event->x_deg);
+    field(out, event->y_deg);
+    field(out, event->amplitude_deg);
+    field(out, event->peak_deg_s);
+    fprintf(out, "%d,%d\n", event->cut, sample->simulated);
 }
 
 void gaze_events_each(void *user, size_t index, int64_t trial_id, char eye, const struct gaze_event *event)
@@ -59,7 +65,7 @@ void gaze_events_each(void *user, size_t index, int64_t trial_id, char eye, cons
     const struct sample_session *session = &events->sample->sessions[index];
     struct json *json = &events->json;
     if (!events->as_json) {
-        csv_line(events->sample, session, trial_id, eye, event);
+        csv_line(json->out, events->sample, session, trial_id, eye, event);
         return;
     }
     json_open(json, NULL, '{');
@@ -78,11 +84,20 @@ void gaze_events_each(void *user, size_t index, int64_t trial_id, char eye, cons
     json_close(json, '}');
 }
 
-void gaze_events_end(struct gaze_events *events)
+bool gaze_events_end(struct gaze_events *events, bool print)
 {
-    if (!events->as_json)
-        return;
-    json_close(&events->json, ']');
-    json_close(&events->json, '}');
-    putchar('\n');
+    FILE *out = events->json.out;
+    if (events->as_json) {
+        json_close(&events->json, ']');
+        json_close(&events->json, '}');
+        fputc('\n', out);
+    }
+    bool ok = fflush(out) == 0 && !ferror(out);
+    rewind(out);
+    char part[1 << 16];
+    for (size_t size; ok && print && (size = fread(part, 1, sizeof part, out)) > 0;)
+        fwrite(part, 1, size, stdout);
+    ok = ok && !ferror(out);
+    fclose(out);
+    return ok;
 }

@@ -32,12 +32,18 @@ static void running_json(struct json *json, const char *key, const struct gaze_r
     json_close(json, '}');
 }
 
-static void sequence_json(struct json *json, const struct stat_main_sequence *m)
+static void sequence_json(struct json *json, const struct gaze_record *r)
 {
+    static const char *const keys[] = {
+        [GAZE_VMAX] = "not_estimable", [GAZE_C] = "c_not_estimable", [GAZE_POWER] = "power_not_estimable"};
+    const struct stat_main_sequence *m = &r->main_sequence;
+    char words[GAZE_REASON_SIZE];
     json_open(json, "main_sequence", '{');
     json_integer(json, "saccades", (int64_t)m->n);
-    if (m->problem)
-        json_text(json, "not_estimable", m->problem);
+    json_number(json, "peak_span_ms", r->span_ms);
+    for (int i = 0; i < 3; i++)
+        if (gaze_sequence_problem(r, (enum gaze_part)i, words))
+            json_text(json, keys[i], words);
     estimate_json(json, "vmax_deg_s", &m->vmax);
     estimate_json(json, "c_deg", &m->c);
     json_number(json, "residual_sd_deg_s", m->residual_sd);
@@ -53,11 +59,12 @@ static void target_json(struct json *json, const struct gaze_target *t)
     json_integer(json, "samples", t->samples);
     json_integer(json, "outside_region", t->outside);
     json_integer(json, "target_not_known", t->unknown);
+    json_integer(json, "target_distance_not_known", t->flat);
     json_number(json, "distance_mean_deg", gaze_running_mean(&t->distance));
     json_number(json, "distance_sd_deg", gaze_running_sd(&t->distance));
     json_number(json, "distance_median_deg", gaze_bins_quantile(&t->distances, 0.5));
-    json_number(json, "offset_x_deg", t->samples ? t->offset.mean_x : (double)NAN);
-    json_number(json, "offset_y_deg", t->samples ? t->offset.mean_y : (double)NAN);
+    json_number(json, "offset_x_deg", t->error.n ? t->offset.mean_x : (double)NAN);
+    json_number(json, "offset_y_deg", t->error.n ? t->offset.mean_y : (double)NAN);
     three_json(json, "offset_sd_deg", gaze_spread_sd_x(&t->offset), gaze_spread_sd_y(&t->offset),
                gaze_spread_sd(&t->offset));
     json_close(json, '}');
@@ -100,15 +107,17 @@ static void record_json(struct json *json, const struct sample *sample, const st
     json_integer(json, "samples_between_trials", r->between);
     json_integer(json, "samples_of_interrupted_attempts", r->superseded);
     json_number(json, "rate_hz", r->rate_hz);
+    json_number(json, "slowest_hz", r->slowest_hz);
+    json_number(json, "fastest_hz", r->fastest_hz);
     json_number(json, "nominal_hz", r->nominal_hz);
-    json_number(json, "accuracy_deg", accuracy ? accuracy->distance.mean : (double)NAN);
+    json_number(json, "accuracy_deg", accuracy ? accuracy->error.mean : (double)NAN);
     three_json(json, "rms_s2s_deg", gaze_quality_rms_x(q), gaze_quality_rms_y(q), gaze_quality_rms(q));
     three_json(json, "sd_deg", gaze_spread_sd_x(&q->within), gaze_spread_sd_y(&q->within),
                gaze_spread_sd(&q->within));
     json_number(json, "bcea_deg2", gaze_spread_bcea(&q->within, gaze->options.bcea_share));
     events_json(json, q, saccades);
     if (saccades && r->session == SAMPLE_NONE)
-        sequence_json(json, &r->main_sequence);
+        sequence_json(json, r);
     json_open(json, "targets", '[');
     for (size_t i = 0; i < r->target_count; i++)
         target_json(json, &r->targets[i]);
@@ -136,6 +145,7 @@ static void latencies_json(struct json *json, const struct sample *sample, const
         json_integer(json, "frames", l->frames);
         json_integer(json, "light_estimated", l->estimated);
         json_integer(json, "light_not_known", l->unknown);
+        json_integer(json, "gaze_lost", l->lost);
         bins_json(json, "age_ms", &l->age);
         bins_json(json, "to_light_ms", &l->to_light);
         json_close(json, '}');
@@ -215,6 +225,10 @@ void gaze_print_json(const struct sample *sample, const struct gaze_report *gaze
     json_text(&json, "method", rules->method == GAZE_IVT ? "ivt" : "idt");
     json_number(&json, rules->method == GAZE_IVT ? "velocity_deg_s" : "dispersion_deg",
                 rules->method == GAZE_IVT ? rules->velocity_deg_s : rules->dispersion_deg);
+    if (rules->method == GAZE_IVT) {
+        json_number(&json, "window_ms", rules->window_ms);
+        json_number(&json, "peak_ms", rules->peak_ms);
+    }
     json_number(&json, "min_fixation_ms", rules->min_fixation_ms);
     json_number(&json, "bcea_share", gaze->options.bcea_share);
     json_number(&json, "region_x_deg", gaze->options.region_x_deg);
@@ -232,7 +246,7 @@ void gaze_print_json(const struct sample *sample, const struct gaze_report *gaze
     limits_json(&json, sample);
     json_open(&json, "sessions_without_a_sample", '[');
     for (size_t i = 0; i < gaze->silent_count; i++)
-        json_integer(&json, NULL, sample->sessions[gaze->silent[i]].id);
+        json_integer(&json, NULL, sample->sessions[gaze->silent[i].session].id);
     json_close(&json, ']');
     json_close(&json, '}');
     putchar('\n');

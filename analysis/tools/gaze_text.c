@@ -16,6 +16,13 @@ static void number(struct table *t, const char *format, double value)
         table_cell(t, format, value);
 }
 
+static void rate(struct table *t, const struct gaze_record *r)
+{
+    char words[GAZE_REASON_SIZE];
+    gaze_rate_words(r, words);
+    table_cell(t, "%s", words[0] ? words : "-");
+}
+
 static void who(struct table *t, const struct sample *sample, const struct gaze_record *r)
 {
     table_cell(t, "%s", sample->people[r->person].code);
@@ -50,10 +57,10 @@ static bool print_quality(const struct sample *sample, const struct gaze_record 
         const struct gaze_target *accuracy = gaze_accuracy(&records[i]);
         who(&t, sample, &records[i]);
         table_cell(&t, "%" PRId64, q->samples);
-        number(&t, "%.1f", records[i].rate_hz);
+        rate(&t, &records[i]);
         number(&t, "%.2f", q->samples ? 100 * (double)q->invalid / (double)q->samples : (double)NAN);
         number(&t, "%.2f", 100 * records[i].missing / gaze_due(&records[i]));
-        number(&t, "%.2f", accuracy ? accuracy->distance.mean : (double)NAN);
+        number(&t, "%.2f", accuracy ? accuracy->error.mean : (double)NAN);
         if (!of_sessions) {
             number(&t, "%+.2f", accuracy ? accuracy->offset.mean_x : (double)NAN);
             number(&t, "%+.2f", accuracy ? accuracy->offset.mean_y : (double)NAN);
@@ -112,10 +119,25 @@ static void interval(struct table *t, const char *format, double low, double hig
         table_cell(t, "%s to %s", a, b);
 }
 
+// A sentence in lines of at most 110 letters.
+static void print_folded(const char *text)
+{
+    enum { WIDTH = 110 };
+    while (strlen(text) > WIDTH) {
+        int end = WIDTH;
+        while (end > 0 && text[end] != ' ')
+            end--;
+        end = end > 0 ? end : WIDTH;
+        printf("%.*s\n", end, text);
+        text += end + (text[end] == ' ');
+    }
+    puts(text);
+}
+
 static bool print_sequences(const struct sample *sample, const struct gaze_report *gaze,
                             const struct gaze_over *over)
 {
-    char ci[32];
+    char ci[32], words[GAZE_WORDS_SIZE];
     snprintf(ci, sizeof ci, "%g %% CI", 100 * gaze->options.conf);
     const char *const headings[] = {
         "<participant", "<eye", "saccades", "Vmax", ci, "c", ci, "k", ci, "b", ci, "<", NULL};
@@ -133,17 +155,21 @@ static bool print_sequences(const struct sample *sample, const struct gaze_repor
         interval(&t, "%.1f", m->k.low, m->k.high);
         number(&t, "%.3f", m->b.value);
         interval(&t, "%.3f", m->b.low, m->b.high);
-        table_cell(&t, "%s%s", m->problem ? "Vmax not estimable: " : "", m->problem ? m->problem : "");
+        gaze_sequence_remark(&gaze->people[i], words);
+        table_cell(&t, "%s", words);
     }
     bool ok = end_table(&t, "Main sequence: V = Vmax (1 - exp(-A / c)) and V = k A^b; deg/s and degrees");
     for (size_t i = 0; i < over->sequence_count; i++) {
         const struct gaze_over_sequence *s = &over->sequences[i];
-        printf("Over %zu people (eye: %s): Vmax %.0f [%.0f, %.0f] deg/s, c %.2f [%.2f, %.2f] deg.\n", s->vmax.n,
-               gaze_eye_words(s->eye), s->vmax.mean, s->vmax_t.ci_low, s->vmax_t.ci_high, s->c.mean,
-               s->c_t.ci_low, s->c_t.ci_high);
+        printf("Over %zu people (eye: %s): Vmax %.0f [%.0f, %.0f] deg/s", s->vmax.n, gaze_eye_words(s->eye),
+               s->vmax.mean, s->vmax_t.ci_low, s->vmax_t.ci_high);
+        if (s->c.n > 1)
+            printf("; over %zu: c %.2f [%.2f, %.2f] deg", s->c.n, s->c.mean, s->c_t.ci_low, s->c_t.ci_high);
+        puts(".");
     }
-    if (over->sequence_count)
-        putchar('\n');
+    gaze_sequence_words(gaze, words);
+    print_folded(words);
+    putchar('\n');
     return ok;
 }
 
@@ -153,10 +179,17 @@ static bool print_targets(const struct sample *sample, const struct gaze_report 
     const char *const headings[] = {"<participant", "<eye",   "<target", "samples",   "M",
                                     "SD",           "median", "outside", "not known", NULL};
     struct table t;
-    if (over->target_count == 0) {
+    int64_t flat = gaze_flat_samples(gaze);
+    if (over->target_count == 0 && flat == 0)
         puts("No trial that counts had a fixation target: accuracy and distance to it are not estimable.\n");
+    if (flat)
+        printf(
+            "Samples of one eye that cannot be compared with the target, since the file (of an older version)\n"
+            "does not tell how far away it was: %" PRId64
+            ". Accuracy and distance are not estimable by them.\n\n",
+            flat);
+    if (over->target_count == 0)
         return true;
-    }
     table_init(&t, headings);
     for (size_t i = 0; i < gaze->person_count; i++)
         for (size_t j = 0; j < gaze->people[i].target_count; j++) {
@@ -181,15 +214,17 @@ static bool print_targets(const struct sample *sample, const struct gaze_report 
             printf("over %zu people M %.2f [%.2f, %.2f], SD %.2f.\n", o->people.n, o->people.mean, o->t.ci_low,
                    o->t.ci_high, o->people.sd);
     }
-    printf("Samples within %g deg left and right and %g deg up and down count (Weier et al. 2016, 4.2.2).\n\n",
+    printf("Here samples within %g deg left and right and %g deg up and down count (Weier et al. 2016, "
+           "4.2.2).\n\n",
            gaze->options.region_x_deg, gaze->options.region_y_deg);
     return ok;
 }
 
 static bool print_latencies(const struct sample *sample, const struct gaze_report *gaze)
 {
-    const char *const headings[] = {"<participant", "session", "frames", "age p50",   "p95",       "p99",
-                                    "to light p50", "p95",     "p99",    "estimated", "not known", NULL};
+    const char *const headings[] = {"<participant", "session",      "frames", "age p50", "p95",
+                                    "p99",          "to light p50", "p95",    "p99",     "estimated",
+                                    "not known",    "lost",         NULL};
     struct table t;
     if (gaze->latency_count == 0)
         return true;
@@ -207,10 +242,16 @@ static bool print_latencies(const struct sample *sample, const struct gaze_repor
         }
         table_cell(&t, "%" PRId64, l->estimated);
         table_cell(&t, "%" PRId64, l->unknown);
+        table_cell(&t, "%" PRId64, l->lost);
     }
-    return end_table(
+    bool ok = end_table(
         &t, "Age of the gaze in stimulus frames that followed it, ms: from the sample's arrival to the "
             "start of work, and to light\n(time of light: as the display reported it, or estimated)");
+    int64_t all, lost = gaze_lost_frames(gaze, &all);
+    if (lost)
+        printf("Stimulus frames that should follow the gaze and had none: %" PRId64 " of %" PRId64 ".\n\n",
+               lost, all);
+    return ok;
 }
 
 static bool print_checks(const struct sample *sample, const struct gaze_report *gaze)
@@ -238,43 +279,6 @@ static bool print_checks(const struct sample *sample, const struct gaze_report *
     return end_table(&t, "Independent checks of the tracker");
 }
 
-static void print_notes(const struct sample *sample, const struct gaze_report *gaze)
-{
-    const struct gaze_rules *rules = &gaze->options.rules;
-    int64_t between = 0, superseded = 0, disordered = 0;
-    if (rules->method == GAZE_IVT)
-        printf(
-            "I-VT: faster than %g deg/s over %g ms is a saccade; fixations from %g ms, saccades from %g ms;\n"
-            "gaps over %g ms break events.",
-            rules->velocity_deg_s, rules->window_ms, rules->min_fixation_ms, rules->min_saccade_ms,
-            gaze->options.gap_ms);
-    else
-        printf("I-DT: fixations within %g deg, from %g ms; gaps over %g ms break them. Saccades need --method "
-               "ivt.",
-               rules->dispersion_deg, rules->min_fixation_ms, gaze->options.gap_ms);
-    printf(" BCEA: P = %g. Head's frame, right and up positive.\n", gaze->options.bcea_share);
-    for (size_t i = 0; i < gaze->record_count; i++) {
-        between += gaze->records[i].between;
-        superseded += gaze->records[i].superseded;
-        disordered += gaze->records[i].quality.disordered;
-    }
-    printf("Left out, samples between trials: %" PRId64 "; of interrupted attempts: %" PRId64 ".\n", between,
-           superseded);
-    if (disordered)
-        printf("Left out of fixations and saccades, samples not later than the one before: %" PRId64 ".\n",
-               disordered);
-    for (size_t i = 0; i < gaze->silent_count; i++)
-        printf("Session %" PRId64 " had a tracker and no sample in any trial.\n",
-               sample->sessions[gaze->silent[i]].id);
-    for (size_t i = 0; i < sample->exclusion_count; i++) {
-        const struct sample_exclusion *e = &sample->exclusions[i];
-        if (strncmp(e->rule, "gaze_", 5) == 0)
-            printf("Limit exceeded, %s, trial %" PRId64 ", %s (%s): %s.\n", e->code, e->trial_id, e->rule,
-                   e->rule_set, e->reason);
-    }
-    study_notes(sample);
-}
-
 bool gaze_print_text(const struct sample *sample, const struct gaze_report *gaze, const struct gaze_over *over)
 {
     study_title(sample, "Gaze");
@@ -286,6 +290,6 @@ bool gaze_print_text(const struct sample *sample, const struct gaze_report *gaze
                (gaze->options.rules.method == GAZE_IDT || print_sequences(sample, gaze, over)) &&
                print_targets(sample, gaze, over));
     ok = ok && print_latencies(sample, gaze) && print_checks(sample, gaze);
-    print_notes(sample, gaze);
+    gaze_print_notes(sample, gaze);
     return ok;
 }

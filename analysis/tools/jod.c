@@ -9,19 +9,20 @@
 #include <stdio.h>
 
 static const char help[] =
-    "usage: fovstats jod DB... [--conf C] [--simulated] [--json]\n"
+    "usage: fovstats jod DB... [--conf C] [--simulated] [--protocol N] [--json]\n"
     "\n"
     "Preferences on one scale per block: just-objectionable differences (JOD) from the reference, by "
     "Thurstone's\n"
     "case V and maximum likelihood. One JOD apart is 75 % preference; negative is worse than the reference.\n"
+    "The reference is the option that most trials of the block had for theirs, excluded trials too.\n"
     "Intervals by a bootstrap over people (1000 replicates, one seed). Where no chain of answers prefers the\n"
-    "reference to an option, or none prefers it to the reference, the likelihood has no maximum: the option "
-    "is\n"
-    "not estimable without a prior, and none is put on it. Where that is so in more replicates than an end of\n"
-    "the interval leaves out, that end is open: \"below\" or \"above\". People who all answered alike have no\n"
-    "interval.\n"
+    "reference to an option, or none prefers it to the reference, the likelihood has no maximum: the\n"
+    "option is not estimable without a prior, and none is put on it. Where that is so in more replicates\n"
+    "than an end of the interval leaves out, that end is open: \"below\" or \"above\". People who all\n"
+    "answered alike have no interval.\n"
     "  --conf C     confidence of the intervals (0.95)\n"
     "  --simulated  analyse simulated sessions, which are left out otherwise\n"
+    "  --protocol N analyse the sessions of this protocol; else of the one with most sessions\n"
     "  --json       one object with the blocks in an array\n"
     "\"Equal\" and answers to questions with a right answer are not part of it.\n";
 
@@ -132,35 +133,36 @@ static void print_json(const struct sample *sample, const struct jod *j)
     putchar('\n');
 }
 
-static int run(const struct command *command, int argc, char **argv)
+static int analyse(const struct command *command, const struct study_arguments *arguments,
+                   struct sample *sample)
 {
-    struct study_arguments arguments;
-    struct sample sample;
-    int code = study_arguments_load(command, argc, argv, false, &arguments, &sample);
-    if (code >= 0)
-        return code;
+    int code;
     char error[SAMPLE_ERROR_SIZE];
     struct jod j = {0};
     bool ok = true;
-    if (!jod_load(&j, &sample, arguments.conf, JOD_REPLICATES, JOD_SEED, error, sizeof error)) {
+    if (!jod_load(&j, sample, arguments->conf, JOD_REPLICATES, JOD_SEED, error, sizeof error)) {
         code = command_fail(command, EXIT_FAILED, "%s", error);
     } else if (j.block_count == 0) {
         code =
             command_fail(command, EXIT_FAILED, "%s: no preference between two options was recorded that counts",
-                         store_reader_path(sample.files[0]));
-    } else if (arguments.json) {
-        print_json(&sample, &j);
+                         store_reader_path(sample->files[0]));
+    } else if (arguments->json) {
+        print_json(sample, &j);
         code = command_finish(command);
     } else {
-        study_title(&sample, "Just-objectionable differences");
+        study_title(sample, "Just-objectionable differences");
         for (size_t i = 0; ok && i < j.block_count; i++)
-            ok = print_block(&sample, &j, &j.blocks[i]);
-        print_notes(&sample, &j);
+            ok = print_block(sample, &j, &j.blocks[i]);
+        print_notes(sample, &j);
         code = ok ? command_finish(command) : command_fail(command, EXIT_FAILED, "not enough memory");
     }
     jod_free(&j);
-    sample_free(&sample);
     return code;
+}
+
+static int run(const struct command *command, int argc, char **argv)
+{
+    return study_arguments_run(command, argc, argv, analyse);
 }
 
 const struct command command_jod = {"jod", "preferences on a scale of just-objectionable differences", help,

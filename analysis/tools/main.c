@@ -5,10 +5,13 @@
 #include <string.h>
 
 // Adding a subcommand: its file, its declaration in command.h, its line here.
-static const struct command *const commands[] = {
-    &command_binom,      &command_choices, &command_ratings, &command_anova, //
-    &command_thresholds, &command_jod,     &command_frames,  &command_power, //
-    &command_gaze,       &command_report,  &command_merge,   &command_export, NULL};
+static const struct command *const commands[] = {&command_binom,      &command_choices,
+                                                 &command_ratings,    &command_anova, //
+                                                 &command_thresholds, &command_jod,
+                                                 &command_frames,     &command_power, //
+                                                 &command_gaze,       &command_report,
+                                                 &command_merge,      &command_export, //
+                                                 &command_planned,    NULL};
 
 static void print_help(FILE *out)
 {

@@ -1,17 +1,16 @@
-#include "analysis/report/choices.h"
 #include "analysis/tools/arguments.h"
 #include "analysis/tools/power_plan.h"
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 static const char help[] =
     "usage: fovstats power --share P [--margin M] [--participants N | FROM..TO] [--choices C] [--sd SD]\n"
     "                      [--alpha A] [--power W] [--studies S] [--seed N] [--json]\n"
     "       fovstats power REHEARSAL.db [--simulated] --share P --participants FROM..TO [the same options]\n"
     "       fovstats power --d D | --difference X --sd SD [--unpaired] [--participants N | FROM..TO] [...]\n"
-    "       fovstats power --levels 3x2 --f F [--participants N | FROM..TO] [--alpha A] [--power W] [--json]\n"
+    "       fovstats power --f F --levels 3x2 | REHEARSAL.db [--simulated] [--participants N | FROM..TO] "
+    "[...]\n"
     "\n"
     "How often a study of so many people finds what is there, and how many people find it often enough.\n"
     "\n"
@@ -22,7 +21,9 @@ static const char help[] =
     "simulation's own error (95 %).\n"
     "  REHEARSAL.db  take each cell's choices per person from this study file, as the protocol's own plans "
     "made\n"
-    "                them: rehearse with fovstudy run PROTOCOL --participants N --observer sim\n"
+    "                them: rehearse with fovstudy run PROTOCOL --participants N --observer sim; who chose "
+    "nothing in\n"
+    "                a cell, for all answers were \"equal\", has no choice there in the plan either\n"
     "  --simulated   its simulated sessions, as of a rehearsal\n"
     "  --share P     the mean preference over people, above 0 and below 1 (with --margin: 0.5)\n"
     "  --margin M    how often equality within 0.5 - M to 0.5 + M is shown instead, by two one-sided tests at "
@@ -41,7 +42,10 @@ static const char help[] =
     "is\n"
     "                then that of the ratings in a group\n"
     "Ratings, by analysis of variance within people, every effect of the design, exactly under sphericity:\n"
-    "  --levels LxL  levels of each factor; everybody rates once in every cell\n"
+    "  REHEARSAL.db  factors within people and their levels as in the rated blocks of this study file, said "
+    "before\n"
+    "                the effects\n"
+    "  --levels LxL  levels of each factor instead, also beside a file; everybody rates in every cell\n"
     "  --f F         Cohen's f: standard deviation of the effect's true values over the cells in standard\n"
     "                deviations of its error (what is left of a cell without person and effect)\n"
     "\n"
@@ -49,71 +53,6 @@ static const char help[] =
     "  --alpha A     level of the test, two-sided but for --margin (0.05)\n"
     "  --power W     also say how many people, of up to 10000 where not for --share alone, reach it (0.8)\n"
     "  --json        one object with the sizes in an array; what is not reached is null\n";
-
-// Where a cell is not everybody's, the sizes are of those who get it.
-static int show_cells(const struct command *command, const struct power_plan *plan, const struct choices *cells,
-                      size_t everybody, struct json *json)
-{
-    int code = -1;
-    for (size_t i = 0; i < cells->cell_count && code < 0; i++) {
-        const struct choice_cell *cell = &cells->cells[i];
-        int64_t *choices = calloc(cell->people + 1, sizeof *choices);
-        char name[256];
-        int length = snprintf(name, sizeof name, "%.60s: %.100s", cell->block, cell->label);
-        if (cell->people < everybody)
-            snprintf(name + length, sizeof name - (size_t)length,
-                     " (of the participants who get this cell: %zu of %zu)", cell->people, everybody);
-        for (size_t j = 0; choices && j < cell->people; j++)
-            choices[j] = cell->counts[j].n;
-        code = choices ? power_show(command, plan, &(struct power_case){name, choices, cell->people, 0}, json)
-                       : command_fail(command, EXIT_FAILED, "not enough memory");
-        free(choices);
-    }
-    return code;
-}
-
-static int show_rehearsal(const struct command *command, const struct power_plan *plan, char **files, int count,
-                          struct json *json)
-{
-    char error[SAMPLE_ERROR_SIZE];
-    struct sample sample = {0};
-    struct choices cells = {0};
-    int code = -1;
-    if (!sample_load(&sample, (const char *const *)files, (size_t)count, plan->simulated, NULL, error,
-                     sizeof error) ||
-        !choices_load(&cells, &sample, 0.95, error, sizeof error))
-        code = command_fail(command, EXIT_FAILED, "%s", error);
-    else if (!cells.cell_count)
-        code =
-            command_fail(command, EXIT_FAILED, "%s: no choice was recorded, so no cell has a design", files[0]);
-    if (code < 0) {
-        power_begin(plan, sample.data_hash, json);
-        code = show_cells(command, plan, &cells, sample.person_count, json);
-    }
-    choices_free(&cells);
-    sample_free(&sample);
-    return code;
-}
-
-// Every effect of the design: the factors by letter, "A x C". Effects of the same degrees of freedom have the
-// same power; they are all there so that nobody has to look for theirs.
-static int show_effects(const struct command *command, const struct power_plan *plan, struct json *json)
-{
-    int code = -1;
-    for (unsigned bits = 1; bits < 1u << plan->factors && code < 0; bits++) {
-        char name[128] = "";
-        size_t length = 0;
-        int64_t df = 1;
-        for (size_t i = 0; i < plan->factors; i++)
-            if (bits >> i & 1) {
-                df *= plan->levels[i] - 1;
-                length += (size_t)snprintf(name + length, sizeof name - length, "%s%c (%d)",
-                                           length ? " x " : "", (char)('A' + (int)i), (int)plan->levels[i]);
-            }
-        code = power_show(command, plan, &(struct power_case){name, NULL, 0, df}, json);
-    }
-    return code;
-}
 
 static int run(const struct command *command, int argc, char **argv)
 {
@@ -151,13 +90,16 @@ static int run(const struct command *command, int argc, char **argv)
     if (code >= 0 || (code = power_plan_check(command, people, levels, count > 0, &plan)) >= 0)
         return code;
     struct json json = {stdout, false};
+    int64_t choices = (int64_t)plan.choices;
+    const struct power_case only = {"", &choices, 1, 0};
+    const struct power_source source = {
+        .simulates = !power_plan_test(&plan, &only)->at, .designs = &plan.design, .design_count = 1};
     if (count) {
-        code = show_rehearsal(command, &plan, argv, count, &json);
+        code = power_rehearsal(command, &plan, argv, count, &json);
     } else {
-        int64_t choices = (int64_t)plan.choices;
-        power_begin(&plan, NULL, &json);
-        code = plan.factors ? show_effects(command, &plan, &json)
-                            : power_show(command, &plan, &(struct power_case){"", &choices, 1, 0}, &json);
+        power_begin(&plan, &source, &json);
+        code = isnan(plan.f) ? power_show(command, &plan, &only, &json)
+                             : power_show_design(command, &plan, &plan.design, false, &json);
     }
     if (code >= 0)
         return code;

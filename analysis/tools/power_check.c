@@ -28,7 +28,7 @@ static int check_people(const struct command *command, const char *text, struct 
     char first[32] = "";
     const char *dots = strstr(text, "..");
     snprintf(first, sizeof first, "%.*s", (int)(dots ? (size_t)(dots - text) : strlen(text)), text);
-    int64_t least = plan->factors || (!isnan(plan->d) && !plan->unpaired) ? 2 : plan->unpaired ? 4 : 1;
+    int64_t least = !isnan(plan->f) || (!isnan(plan->d) && !plan->unpaired) ? 2 : plan->unpaired ? 4 : 1;
     bool ok = arguments_integer(first, &plan->from);
     plan->to = plan->from;
     if (dots)
@@ -43,24 +43,26 @@ static int check_people(const struct command *command, const char *text, struct 
         text, (int)least, STAT_SIMULATED_PEOPLE, POWER_SIZES);
 }
 
-// "3x2"
-static int check_levels(const struct command *command, const char *text, struct power_plan *plan)
+// "3x2"; the factors are A, B and so on.
+static int check_levels(const struct command *command, const char *text, struct power_design *design)
 {
+    static const char *const letters[POWER_FACTORS] = {"A", "B", "C", "D", "E", "F"};
     const char *at = text;
-    plan->cells = 1;
-    while (plan->factors < POWER_FACTORS) {
+    design->cells = 1;
+    while (design->factors < POWER_FACTORS) {
         char one[16] = "";
         size_t length = strcspn(at, "x");
         snprintf(one, sizeof one, "%.*s", (int)(length < sizeof one ? length : 0), at);
         int64_t levels = 0;
         if (!arguments_integer(one, &levels) || levels < 2 || levels > POWER_CELLS)
             break;
-        plan->levels[plan->factors++] = levels;
-        plan->cells *= levels;
+        design->names[design->factors] = letters[design->factors];
+        design->levels[design->factors++] = levels;
+        design->cells *= levels;
         at += length;
-        if (*at == '\0' && plan->cells <= POWER_CELLS)
+        if (*at == '\0' && design->cells <= POWER_CELLS)
             return -1;
-        if (*at++ == '\0' || plan->cells > POWER_CELLS)
+        if (*at++ == '\0' || design->cells > POWER_CELLS)
             break;
     }
     return command_fail(
@@ -73,13 +75,17 @@ static int check_levels(const struct command *command, const char *text, struct 
 // One question at a time: of choices, of a difference of ratings, or of an analysis of variance.
 static const char *contradiction(const struct power_plan *plan, const char *levels, bool rehearsal)
 {
-    bool difference = !isnan(plan->d) || !isnan(plan->difference), ratings = difference || levels;
-    if (difference && levels)
-        return "takes --levels or a difference of ratings (--d, --difference), not both";
+    bool difference = !isnan(plan->d) || !isnan(plan->difference), effect = levels || !isnan(plan->f),
+         ratings = difference || effect;
+    if (difference && effect)
+        return "takes an effect (--f, --levels) or a difference of ratings (--d, --difference), not both";
     if (ratings && (!isnan(plan->share) || !isnan(plan->margin) || plan->choices != 1))
         return "--share, --margin and --choices are of choices and go with no difference or levels of ratings";
-    if (ratings && rehearsal)
-        return "takes no study file for ratings: their power does not depend on what was recorded";
+    if (difference && rehearsal)
+        return "takes no study file for a difference of ratings: its power does not depend on what was "
+               "recorded";
+    if (rehearsal && plan->choices != 1)
+        return "takes --choices or a study file that has them, not both";
     if (!isnan(plan->d) && !isnan(plan->difference))
         return "takes --d or --difference with --sd, not both";
     if (!isnan(plan->difference) && isnan(plan->sd))
@@ -89,13 +95,14 @@ static const char *contradiction(const struct power_plan *plan, const char *leve
         return "--sd goes with --share or --difference only";
     if (levels && isnan(plan->f))
         return "needs --f F beside --levels, the effect to be found; see --help";
-    if (!levels && !isnan(plan->f))
-        return "needs --levels beside --f, the design, such as 3x2; see --help";
+    if (!levels && !isnan(plan->f) && !rehearsal)
+        return "needs --levels beside --f, the design, such as 3x2, or a rehearsal's study file that has it; "
+               "see "
+               "--help";
     if (plan->unpaired && !difference)
         return "--unpaired goes with --d or --difference only";
     if (!ratings && isnan(plan->share) && isnan(plan->margin))
-        return "needs --share P, the preference to be found, or --margin, --d, --difference or --levels; see "
-               "--help";
+        return "needs --share P, the preference to be found, or --margin, --d, --difference or --f; see --help";
     return NULL;
 }
 
@@ -147,10 +154,10 @@ int power_plan_check(const struct command *command, const char *people, const ch
         (code = check_range(command, "--choices", plan->choices, 1, STAT_SIMULATED_CHOICES, true)) >= 0 ||
         (code = check_range(command, "--studies", plan->studies, 100, STAT_SIMULATED_STUDIES, true)) >= 0 ||
         (code = check_range(command, "--seed", plan->seed, 0, 9007199254740992.0, true)) >= 0 ||
-        (levels && (code = check_levels(command, levels, plan)) >= 0) ||
+        (levels && (code = check_levels(command, levels, &plan->design)) >= 0) ||
         (code = check_difference(command, plan)) >= 0)
         return code;
-    if (!isnan(plan->f) && !(plan->f > 0 && plan->f * plan->f * (double)plan->cells <= 100))
+    if (!isnan(plan->f) && !(plan->f > 0 && power_design_fits(plan, &plan->design)))
         return command_fail(command, EXIT_USAGE,
                             "--f is %g but must be above 0, and F^2 times the cells 100 at most", plan->f);
     if (!power_plan_ratings(plan) && (code = check_choices(command, people, rehearsal, plan)) >= 0)

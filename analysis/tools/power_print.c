@@ -38,6 +38,8 @@ static bool fill(const struct power_plan *plan, const struct power_case *c, stru
         *row = (struct row){n, {none, {none, none}, 0, none}};
         if (test->at)
             row->power.power = test->at(plan, c, n);
+        else if (power_case_choices(c, n) == 0) // nobody of so few has a choice to make
+            row->power = (struct stat_simulated_power){0, {0, 0}, 0, none};
         else
             row->power = simulate(plan, c, n);
         if (isnan(row->power.power))
@@ -107,18 +109,18 @@ static void print_needed(const struct power_plan *plan, const struct power_case 
 
 static bool print_text(const struct power_plan *plan, const struct power_case *c, const struct row *rows)
 {
-    static const char *const headings[] = {"people", "power", "95 % of simulation", NULL};
+    static const char *const exact[] = {"people", "power", NULL}, *const simulated[] = {"people", "power",
+                                                                                        "95 % of simulation",
+                                                                                        NULL};
+    const struct power_test *test = power_plan_test(plan, c);
     struct table t;
-    table_init(&t, headings);
-    if (c->name[0])
-        printf("%s\n", c->name);
+    table_init(&t, test->at ? exact : simulated);
+    printf("%s%s%s\n", c->name, c->name[0] ? "; " : "", test->method);
     for (int64_t n = plan->from; n <= plan->to && plan->from; n++) {
         const struct row *row = &rows[n - plan->from];
         table_cell(&t, "%" PRId64, n);
         table_cell(&t, "%.4f", row->power.power);
-        if (isnan(row->power.ci.low))
-            table_cell(&t, "exact");
-        else
+        if (!test->at)
             table_cell(&t, "%.4f to %.4f", row->power.ci.low, row->power.ci.high);
     }
     bool ok = !plan->from || table_print(&t, stdout);
@@ -138,8 +140,7 @@ int power_show(const struct command *command, const struct power_plan *plan, con
         ok = print_text(plan, c, rows);
     free(rows);
     return ok ? -1
-              : command_fail(
-                    command, EXIT_FAILED,
-                    "%s%sthe power of this design cannot be calculated: nobody chooses, or not enough memory",
-                    c->name, c->name[0] ? ": " : "");
+              : command_fail(command, EXIT_FAILED,
+                             "%s%sthe power of this design cannot be calculated: not enough memory", c->name,
+                             c->name[0] ? ": " : "");
 }

@@ -1,4 +1,5 @@
-// The tests that `fovstats power` plans, and how many people each needs.
+// The tests that `fovstats power` plans, and how many people each needs. Of choices it is the test that the
+// data ask for (choices.h): exact where nobody has more than one.
 #include "analysis/stats/power.h"
 #include "analysis/stats/power_anova.h"
 #include "analysis/stats/power_equivalence.h"
@@ -7,29 +8,56 @@
 
 #include <math.h>
 
+int64_t power_case_choices(const struct power_case *c, int64_t people)
+{
+    int64_t all = 0, part = 0;
+    for (size_t i = 0; i < c->count; i++) {
+        all += c->choices[i];
+        part += (int64_t)i < people % (int64_t)c->count ? c->choices[i] : 0;
+    }
+    return people / (int64_t)c->count * all + part;
+}
+
+// The fewest people who make so many choices, of one each at most; 0 for 0.
+static int64_t people_of(const struct power_case *c, int64_t choices)
+{
+    int64_t all = power_case_choices(c, (int64_t)c->count);
+    if (choices < 1 || all < 1)
+        return 0;
+    int64_t rounds = (choices - 1) / all, left = choices - rounds * all;
+    size_t last = 0;
+    for (; left > 0; last++)
+        left -= c->choices[last];
+    return rounds * (int64_t)c->count + (int64_t)last;
+}
+
+static struct stat_sample_size people_sizes(const struct power_case *c, struct stat_sample_size choices)
+{
+    return (struct stat_sample_size){people_of(c, choices.first), people_of(c, choices.stays)};
+}
+
+// People without a choice find nothing.
 static double binomial(const struct power_plan *plan, const struct power_case *c, int64_t people)
 {
-    (void)c;
-    return stat_binomial_power(people, 0.5, plan->share, plan->alpha);
+    int64_t n = power_case_choices(c, people);
+    return n ? stat_binomial_power(n, 0.5, plan->share, plan->alpha) : 0;
 }
 
 static struct stat_sample_size binomial_size(const struct power_plan *plan, const struct power_case *c)
 {
-    (void)c;
-    return stat_binomial_sample_size(0.5, plan->share, plan->alpha, plan->power);
+    return people_sizes(c, stat_binomial_sample_size(0.5, plan->share, plan->alpha, plan->power));
 }
 
 static double equivalence(const struct power_plan *plan, const struct power_case *c, int64_t people)
 {
-    (void)c;
-    return stat_binomial_equivalence_power(people, plan->margin, plan->share, plan->alpha);
+    int64_t n = power_case_choices(c, people);
+    return n ? stat_binomial_equivalence_power(n, plan->margin, plan->share, plan->alpha) : 0;
 }
 
 static struct stat_sample_size equivalence_size(const struct power_plan *plan, const struct power_case *c)
 {
-    (void)c;
-    return stat_binomial_equivalence_size(plan->margin, plan->share, plan->alpha, plan->power,
-                                          STAT_SIMULATED_PEOPLE);
+    return people_sizes(c, stat_binomial_equivalence_size(plan->margin, plan->share, plan->alpha, plan->power,
+                                                          STAT_SIMULATED_PEOPLE));
 }
 
 static double paired(const struct power_plan *plan, const struct power_case *c, int64_t people)
@@ -47,7 +75,7 @@ static double unpaired(const struct power_plan *plan, const struct power_case *c
 
 static double anova(const struct power_plan *plan, const struct power_case *c, int64_t people)
 {
-    return stat_anova_within_power(people, plan->cells, c->df, plan->f, plan->alpha);
+    return stat_anova_within_power(people, plan->design.cells, c->df, plan->f, plan->alpha);
 }
 
 // These rise with the number of people. NaN, of too few people, has not the power.
@@ -69,7 +97,13 @@ static struct stat_sample_size rising(const struct power_plan *plan, const struc
 
 bool power_plan_ratings(const struct power_plan *plan)
 {
-    return !isnan(plan->d) || plan->factors > 0;
+    return !isnan(plan->d) || !isnan(plan->f);
+}
+
+// Beyond, the noncentral F leaves its range (power_anova.h) for the largest number of people.
+bool power_design_fits(const struct power_plan *plan, const struct power_design *design)
+{
+    return plan->f * plan->f * (double)design->cells <= 100;
 }
 
 const struct power_test *power_plan_test(const struct power_plan *plan, const struct power_case *c)
@@ -81,13 +115,13 @@ const struct power_test *power_plan_test(const struct power_plan *plan, const st
                                    differences = {"paired t", paired, rising},
                                    groups = {"t of two groups", unpaired, rising},
                                    effect = {"noncentral F", anova, rising};
-    if (plan->factors)
+    if (!isnan(plan->f))
         return &effect;
     if (!isnan(plan->d))
         return plan->unpaired ? &groups : &differences;
     bool once = true;
     for (size_t i = 0; i < c->count; i++)
-        once = once && c->choices[i] == 1;
+        once = once && c->choices[i] <= 1;
     if (isnan(plan->margin))
         return once ? &exact : &flips;
     return once ? &within : &people;

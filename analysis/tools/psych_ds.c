@@ -171,15 +171,25 @@ static bool write_readme(const struct study *study, const char *folder, char *er
     if (!out)
         return false;
     fprintf(out, "# %s%s\n\n", study->simulated ? "SIMULATED DATA: " : "", study->name);
-    fputs("Every file in `data` is one table; `dataset_description.json` says what each column means, with "
-          "unit and\n"
-          "frame of reference. An empty cell is a missing value, never zero. Rows are joined by `trial_id`,\n"
-          "`session_id`, `segment_id` and `condition_id`; `row_id` is unique in its file. `excluded` says "
-          "whether a\n"
-          "rule took a row out; the table `exclusions` says which and why. The table `protocols` holds the "
-          "protocol's\n"
-          "text. Times ending in `_ns` start anew with each segment.\n",
-          out);
+    fputs(
+        "Every file in `data` is one table; `dataset_description.json` says what each column means, with "
+        "unit and\n"
+        "frame of reference. An empty cell is a missing value, never zero. Rows are joined by `trial_id`,\n"
+        "`session_id`, `segment_id` and `condition_id`; `row_id` is unique in its file.\n\n"
+        "`excluded` says whether a rule takes a row out, and `excluded_rules` which; such rows are here all "
+        "the "
+        "same,\n"
+        "as are those of trials that are not `done`. The table `exclusions` says why. `gaze`, `gazechecks` and "
+        "`frames`\n"
+        "are as they were recorded: whether their trial or session is out stands in `trials` and `sessions`.\n"
+        "Trials that were interrupted left rows of several attempts; the last one is the `attempt` of "
+        "`trials`.\n\n"
+        "`events` holds everything else that happened, switches, pauses and notes among it; `measurederrors` "
+        "what\n"
+        "simulated observers answer from; `protocols` the protocol's text. Times ending in `_ns` start anew "
+        "with\n"
+        "each segment.\n",
+        out);
     return close_file(out, folder, "README.md", error, error_size);
 }
 

@@ -57,12 +57,25 @@ static const struct psych_ds_column columns[] = {
     {"first_shown", "Slot that was shown first.", NULL, SLOT},
     {"fixation", "What was to be looked at.", NULL, NULL},
     {"repeat_of", "Trial that this one repeats because it was flagged as bad.", NULL, NULL},
-    {"attempt", "How often the trial had been started.", NULL, NULL},
+    {"attempt",
+     "Attempt at the trial that the row is of, from 1; of a trial itself how often it was started, 0 for "
+     "never. "
+     "An interrupted trial begins anew with the next attempt. Empty: of no trial, a sample from before its "
+     "first "
+     "attempt, or of an interrupted attempt that is not known.",
+     NULL, NULL},
     {"started_ns", "Begin of the last attempt: " CLOCK ".", "ns", NULL},
     {"ended_ns", "End of the trial: " CLOCK ".", "ns", NULL},
-    {"excluded", "Taken out by a rule of the sets planned or late, of the trial, session or participant.", NULL,
+    {"excluded",
+     "Whether a rule of the sets planned or late takes this row out: one of its participant, session or trial. "
+     "A "
+     "rule of a trial that ends in :rating_pair takes out its ratings and nothing else.",
+     NULL, YES_NO},
+    {"excluded_stricter", "The same by a rule of the set stricter, which is applied for comparison only.", NULL,
      YES_NO},
-    {"excluded_stricter", "Would be taken out by a stricter rule.", NULL, YES_NO},
+    {"excluded_rules",
+     "The rules of excluded and excluded_stricter: RULE (SET), one after another with semicolons. Empty: none.",
+     NULL, NULL},
     {"test_condition_id", "Condition under test: the protocol's first option.", NULL, NULL},
     {"reference_condition_id", "The condition it was compared with.", NULL, NULL},
     {"chosen_slot", "The answer, as a slot.", NULL, SLOT "; equal"},
@@ -120,8 +133,9 @@ static const struct psych_ds_column columns[] = {
     {"fovea", "Fovea of each eye as used (JSON), degrees, " HEAD ".", "deg", NULL},
     {"fovea_source", "What the fovea followed.", NULL, "gaze; target; fixed; lost"},
     {"effective", "What was really rendered, where it differs from the condition (JSON).", NULL, NULL},
-    {"target_x_deg", "The fixation target, " HEAD ".", "deg", NULL},
+    {"target_x_deg", "The fixation target, from the middle between the eyes, " HEAD ".", "deg", NULL},
     {"target_y_deg", "The same upwards.", "deg", NULL},
+    {"target_m", "Its distance from the middle between the eyes. Empty where not known.", "m", NULL},
     {"head_pose", "Position (metres) and orientation (quaternion) in the world (JSON).", NULL, NULL},
     {"shaded_px", "Pixels of both eyes that were shaded.", "px", NULL},
     {"triangles", "Triangles of both eyes, after culling.", NULL, NULL},
@@ -130,6 +144,22 @@ static const struct psych_ds_column columns[] = {
     {"rule_set", "Planned in the protocol, stricter than planned, or made after data were seen.", NULL,
      "planned; stricter; late"},
     {"exclusion_reason", "Why, in words; free text where a person wrote it.", NULL, NULL},
+    {"event_kind",
+     "What happened: toggle, toggle_ignored, pause_began, note (of the experimenter), sphere (one to be "
+     "counted, "
+     "and where), merged (the file that a session came from), ...",
+     NULL, NULL},
+    {"event_detail", "More about it, in words or JSON; free text where the experimenter typed a note.", NULL,
+     NULL},
+    {"metric",
+     "The measure of error. wrmse: root mean square of the difference of images, weighted by eccentricity; "
+     "behind "
+     "a semicolon the settings it was measured with.",
+     NULL, NULL},
+    {"image_error",
+     "How far condition_id lies from reference_condition_id in that measure: what simulated observers answer "
+     "from.",
+     NULL, NULL},
     {"excluded_by", "Program or person that applied the rule.", NULL, NULL},
     {"applied_at", "When the rule was applied, ISO 8601, UTC.", NULL, NULL},
     {NULL, NULL, NULL, NULL},

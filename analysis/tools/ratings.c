@@ -1,4 +1,5 @@
 #include "analysis/report/ratings.h"
+#include "analysis/report/html.h"
 
 #include "analysis/tools/arguments.h"
 #include "analysis/tools/ratings_parts.h"
@@ -51,7 +52,10 @@ static bool print_ranks(const struct sample *sample, const struct rating_questio
         table_cell(&t, "%zu", g->rank.n);
         ratings_p(&t, g->rank.p_value);
         ratings_number(&t, "%.2f", g->rank.estimate);
-        ratings_interval(&t, g->rank.ci_low, g->rank.ci_high);
+        if (isfinite(g->rank.ci_low) && isfinite(g->rank.ci_high))
+            ratings_interval(&t, g->rank.ci_low, g->rank.ci_high);
+        else
+            table_cell(&t, "n too small");
         ratings_number(&t, "%.2f", g->effect.d);
         ratings_interval(&t, g->effect.ci_low, g->effect.ci_high);
         ratings_number(&t, "%.2f", g->effect.g);
@@ -95,6 +99,8 @@ static bool print_question(const struct sample *sample, const struct rating_ques
     ok = print_ranks(sample, q, conf) && ok;
     const struct stat_ttest *w = &q->first_between;
     const struct stat_effect *d = &q->between_effect;
+    char p[24];
+    html_p_value(p, w->p_value);
     if (q->overlap)
         puts("First ratings are not compared: somebody rated in both orders.");
     else if (q->compared && isnan(w->p_value))
@@ -102,17 +108,20 @@ static bool print_question(const struct sample *sample, const struct rating_ques
                "possible.\n",
                w->estimate);
     else if (q->compared)
-        printf(
-            "First ratings, %s minus %s: %.2f, %g %% CI %.2f to %.2f, t(%.2f) = %.3f, p %.4f (Welch), d %.2f, "
-            "%g %% CI %.2f to %.2f\n",
-            label(sample, q->groups[0].first_condition), label(sample, q->groups[1].first_condition),
-            w->estimate, 100 * conf, w->ci_low, w->ci_high, w->df, w->t, w->p_value, d->d, 100 * conf,
-            d->ci_low, d->ci_high);
+        printf("First ratings, %s minus %s: %.2f, %g %% CI %.2f to %.2f, t(%.2f) = %.3f, p %s (Welch), d %.2f, "
+               "%g %% CI %.2f to %.2f\n",
+               label(sample, q->groups[0].first_condition), label(sample, q->groups[1].first_condition),
+               w->estimate, 100 * conf, w->ci_low, w->ci_high, w->df, w->t, p, d->d, 100 * conf, d->ci_low,
+               d->ci_high);
     else
         printf("First ratings are not compared: that needs two order groups, there %s %zu.\n",
                q->group_count == 1 ? "is" : "are", q->group_count);
     if (q->unpaired)
         printf("Left out, sessions without two ratings of different options: %" PRId64 ".\n", q->unpaired);
+    if (q->late_first)
+        printf("Left out, sessions whose rating planned as the first was given after the second, when both "
+               "options had been seen: %" PRId64 ".\n",
+               q->late_first);
     putchar('\n');
     return ok;
 }
@@ -170,10 +179,15 @@ static void print_json(const struct sample *sample, const struct ratings *r)
             group_json(&json, sample, &q->groups[j]);
         json_close(&json, ']');
         if (q->compared) {
+            char which[600];
+            snprintf(which, sizeof which, "%s minus %s", label(sample, q->groups[0].first_condition),
+                     label(sample, q->groups[1].first_condition));
+            json_text(&json, "first_between_groups_is", which);
             ratings_ttest_json(&json, "first_between_groups", &q->first_between);
             ratings_effect_json(&json, "first_between_groups_d", &q->between_effect);
         }
         json_integer(&json, "unpaired_sessions", q->unpaired);
+        json_integer(&json, "first_rated_last_sessions", q->late_first);
         json_close(&json, '}');
     }
     json_close(&json, ']');

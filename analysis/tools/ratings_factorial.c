@@ -48,8 +48,8 @@ static bool print_means(const struct factorial *f, double conf)
             table_cell(&t, "%s", factor->name);
             table_cell(&t, "%s", factor->levels[k]);
             ratings_number(&t, "%.2f", factor->mean[k]);
-            ratings_interval(&t, factor->mean[k] - factor->half_width[k],
-                             factor->mean[k] + factor->half_width[k]);
+            double half = isnan(f->anova.effects[j].p_gg) ? (double)NAN : factor->half_width[k]; // no spread
+            ratings_interval(&t, factor->mean[k] - half, factor->mean[k] + half);
         }
     bool ok = table_print(&t, stdout);
     table_finish(&t);
@@ -105,6 +105,12 @@ bool ratings_print_factorial(const struct sample *sample, const struct factorial
         ok = print_effects(f) && print_means(f, conf);
         for (size_t j = 0; ok && j < f->factor_count; j++)
             ok = print_pairs(&f->factors[j], conf);
+        char names[256];
+        if (factorial_untested(f, names))
+            printf("\n%s cannot be tested: everybody's ratings differ by the same between levels, so that "
+                   "there is "
+                   "nothing to hold an effect against, however large it is; see the means.\n",
+                   names);
     }
     putchar('\n');
     return ok;

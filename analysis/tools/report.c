@@ -15,7 +15,9 @@ static const char help[] =
     "as\n"
     "               a page, and NAME_narrow as wide as a column; a line in each names the data and the "
     "version\n"
-    "  --bench F    also show speed against error from F, which fovbench --csv wrote\n"
+    "  --bench F    also show speed against error from F, which fovbench --csv wrote; several such files may "
+    "be\n"
+    "               put together, and each device and scene is compared with its own 'regular'\n"
     "  --conf C     confidence of intervals and null regions (0.95)\n"
     "  --simulated  report simulated sessions, which are left out otherwise; the report is branded\n"
     "  --protocol N report the sessions of this protocol; else of the one with most sessions\n";

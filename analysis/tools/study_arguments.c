@@ -4,11 +4,26 @@
 
 #include <inttypes.h>
 #include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
 
 int study_arguments_load(const struct command *command, int argc, char **argv, bool takes_output,
                          struct study_arguments *out, struct sample *out_sample)
 {
     return study_arguments_load_with(command, argc, argv, takes_output, NULL, 0, out, out_sample);
+}
+
+// By the sixteen bytes that every SQLite file begins with.
+static bool is_database(const char *path)
+{
+    char head[16] = "";
+    struct stat info; // a pipe would be waited for
+    FILE *file = stat(path, &info) == 0 && S_ISREG(info.st_mode) ? fopen(path, "rb") : NULL;
+    if (!file)
+        return false;
+    size_t size = fread(head, 1, sizeof head, file);
+    fclose(file);
+    return size == sizeof head && memcmp(head, "SQLite format 3", sizeof head) == 0;
 }
 
 int study_arguments_load_with(const struct command *command, int argc, char **argv, bool takes_output,
@@ -31,6 +46,9 @@ int study_arguments_load_with(const struct command *command, int argc, char **ar
         return command_fail(command, EXIT_USAGE, "needs at least one study file; see --help");
     if (takes_output && !out->output)
         return command_fail(command, EXIT_USAGE, "needs -o FILE.html");
+    if (takes_output && is_database(out->output))
+        return command_fail(command, EXIT_USAGE, "-o %s is a study file and would be overwritten; name another",
+                            out->output);
     if (!(out->conf > 0 && 1 - out->conf > 0 && 1 - out->conf < 1))
         return command_fail(command, EXIT_USAGE, "--conf is %g but must lie between 0 and 1, for example 0.95",
                             out->conf);
@@ -39,6 +57,18 @@ int study_arguments_load_with(const struct command *command, int argc, char **ar
                      sizeof error))
         return command_fail(command, EXIT_FAILED, "%s", error);
     return -1;
+}
+
+int study_arguments_run(const struct command *command, int argc, char **argv, study_analyse_fn analyse)
+{
+    struct study_arguments arguments;
+    struct sample sample;
+    int code = study_arguments_load(command, argc, argv, false, &arguments, &sample);
+    if (code >= 0)
+        return code;
+    code = analyse(command, &arguments, &sample);
+    sample_free(&sample);
+    return code;
 }
 
 static void count_used(const struct sample *sample, int64_t *sessions, int64_t *people)

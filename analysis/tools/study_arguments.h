@@ -25,6 +25,12 @@ int study_arguments_load_with(const struct command *command, int argc, char **ar
                               const struct option *own, size_t own_count, struct study_arguments *out,
                               struct sample *out_sample);
 
+// For subcommands that take no option of their own: parses and loads, hands the sample over, frees it.
+// `analyse` returns the exit code.
+typedef int (*study_analyse_fn)(const struct command *command, const struct study_arguments *arguments,
+                                struct sample *sample);
+int study_arguments_run(const struct command *command, int argc, char **argv, study_analyse_fn analyse);
+
 // The heading of the text output: files, sessions, participants; SIMULATED DATA where it is.
 void study_title(const struct sample *sample, const char *what);
 // The same as the first members of a JSON object.

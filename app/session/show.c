@@ -209,6 +209,7 @@ static bool lay_marks(const struct show *show, const struct machine_view *view, 
     if (targets_fixation(targets, view, &at)) {
         row->target_x_deg = at.x_deg;
         row->target_y_deg = at.y_deg;
+        row->target_m = dvec3_length(at.point);
     }
     uint32_t count = targets_marks(targets, view, &row->head_pose, &eyes, marks, RENDERER_MARKS);
     return renderer_set_marks(desc->renderer, marks, count);
@@ -274,6 +275,7 @@ static struct store_frame empty_row(const struct show *show, const struct machin
         .fovea_source = STORE_NO_FOVEA,
         .target_x_deg = NAN,
         .target_y_deg = NAN,
+        .target_m = NAN,
         .shaded_px = STORE_UNKNOWN,
         .triangles = STORE_UNKNOWN,
     };

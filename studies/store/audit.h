@@ -38,10 +38,13 @@ struct store_audit_frame_row {                                           // by i
     char source;             // of the fovea: 'g' gaze, 't' target, 'f' fixed, 'l' lost, 0
     int64_t gaze_id;         // 0: none
     double gaze_age_ms;      // NaN: none
-    bool blink;              // the samples right after that one have no direction
-    bool other_eye;          // the sample right after it is the other eye's, and has a direction
     bool same_fovea;         // of both eyes, to the last digit
     bool differs;            // what was rendered was not what the condition says
+};
+
+struct store_gaze_after { // what came after the sample that a frame was drawn by
+    bool blink;           // the samples right after it have no direction
+    bool other_eye;       // the sample right after it is the other eye's, and has a direction
 };
 
 struct store_exposure_row { // by trial, attempt and time
@@ -60,6 +63,10 @@ bool store_read_segments(struct store_reader *reader, store_segment_fn each, voi
 bool store_read_audit_trials(struct store_reader *reader, store_audit_trial_fn each, void *user);
 bool store_read_moments(struct store_reader *reader, store_moment_fn each, void *user);
 bool store_read_audit_frames(struct store_reader *reader, store_audit_frame_fn each, void *user);
+// A lookup of its own, since few frames need it; also while frames are being read. All false without a sample
+// (0).
+bool store_read_gaze_after(struct store_reader *reader, int64_t gaze_id, int64_t segment_id,
+                           struct store_gaze_after *out);
 bool store_read_exposures(struct store_reader *reader, store_exposure_fn each, void *user);
 
 #endif

@@ -32,7 +32,7 @@ struct store_fact_row {
     // differs, or the fovea of a foveated option was fixed or lost though the trial foveates by gaze.
     int64_t rendered_frames, fallback_frames;
     double reaction_s;
-    bool caught, missed; // a catch trial with an answer; a wrong one
+    bool caught, missed; // a catch trial with an answer of which it is known whether it was wrong; a wrong one
 };
 
 struct store_excluded_row {

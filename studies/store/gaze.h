@@ -19,11 +19,13 @@ struct store_gaze_trial {                        // by id
     const char *fixation;                        // "" where there is none
     bool done, practice;
     bool tracker; // the session had one
+    double ipd_m; // of the session, between the eyes; NaN: not known
 };
 
 struct store_target_row { // of one trial's stimulus frames that had a target, in the order they were shown
     int64_t segment_id, shown_ns; // when its light left the display
-    double x_deg, y_deg;
+    double x_deg, y_deg;          // from the middle between the eyes
+    double distance_m;            // from there; NaN: not known
 };
 
 struct store_gaze_use { // of a stimulus frame whose fovea follows the gaze, in the order they were shown

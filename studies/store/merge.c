@@ -5,6 +5,7 @@
 #include "schema_sql.h"
 #include "studies/protocol/sha256.h"
 #include "studies/store/merge_private.h"
+#include "studies/store/migrate.h"
 #include "studies/store/read.h"
 
 #include <errno.h>
@@ -26,13 +27,32 @@ bool merge_fail(struct merging *m, const char *format, ...)
     return false;
 }
 
+// What SQLite says as one line: of a broken CHECK it quotes the schema, over several.
+static void one_line(char *text)
+{
+    char *to = text;
+    for (const char *from = text; *from; to++) {
+        *to = *from == '\n' ? ' ' : *from;
+        from += *from == '\n' ? strspn(from, "\n ") : 1;
+    }
+    *to = '\0';
+}
+
 bool merge_fail_sqlite(struct merging *m)
 {
-    int code = sqlite3_errcode(m->db) & 0xff;
+    int code = sqlite3_extended_errcode(m->db);
     const char *path = m->input ? m->input->path : m->desc->output;
-    if (code == SQLITE_CORRUPT || code == SQLITE_NOTADB)
+    if ((code & 0xff) == SQLITE_CORRUPT || (code & 0xff) == SQLITE_NOTADB)
         return merge_fail(m, "%s: the study file is damaged; use a backup, or leave it out", path);
-    return merge_fail(m, "%s: cannot be merged: %s", path, sqlite3_errmsg(m->db));
+    bool damaged = code == SQLITE_CONSTRAINT_CHECK || code == SQLITE_CONSTRAINT_NOTNULL ||
+                   code == SQLITE_CONSTRAINT_DATATYPE;
+    if (damaged)
+        merge_fail(m, "%s: the study file is damaged (%s); use a backup, or leave it out", path,
+                   sqlite3_errmsg(m->db));
+    else
+        merge_fail(m, "%s: cannot be merged: %s", path, sqlite3_errmsg(m->db));
+    one_line(m->error);
+    return false;
 }
 
 void merge_say(struct merging *m, const char *format, ...)
@@ -124,13 +144,15 @@ static bool check_input(struct merging *m)
         "SELECT 1 FROM src.session AS s JOIN src.protocol AS o ON o.id = s.protocol_id JOIN main.protocol AS q "
         "USING "
         "(sha256) JOIN main.session AS m ON m.protocol_id = q.id AND m.seed <> s.seed LIMIT 1";
-    return merge_none(m,
-                      "SELECT integrity_check FROM pragma_integrity_check WHERE schema = 'src' AND "
-                      "integrity_check <> 'ok'",
-                      refuse_damage) &&
+    // As arguments: where they stand in a WHERE clause, SQLite checks main alone and finds no row of src.
+    return merge_none(
+               m,
+               "SELECT trim(replace(replace(integrity_check, '*** in database src ***', ''), char(10), ' ')) "
+               "FROM pragma_integrity_check(NULL, 'src') WHERE integrity_check <> 'ok'",
+               refuse_damage) &&
            merge_none(m,
                       "SELECT 'table ' || \"table\" || ' refers to rows that are not there' FROM "
-                      "pragma_foreign_key_check WHERE schema = 'src'",
+                      "pragma_foreign_key_check(NULL, 'src')",
                       refuse_damage) &&
            merge_none(m, kinds, refuse_kinds) &&
            (m->desc->new_protocol || merge_none(m, protocols, refuse_protocol)) &&
@@ -244,7 +266,11 @@ static bool add_input(struct merging *m)
     struct store_reader *reader = store_reader_open(m->input->path, m->error, m->error_size);
     if (!reader)
         return false;
+    int version = store_reader_version(reader);
     store_reader_close(reader);
+    if (version < STORE_VERSION)
+        return merge_fail(m, "%s: is of an older version (%d, now %d); open it once with fovstudy resume",
+                          m->input->path, version, STORE_VERSION);
     return attach(m) && merge_run(m, "BEGIN") && check_input(m) && move_offset(m) && merge_choose(m) &&
            merge_copy(m) && note_source(m) && merge_run(m, "COMMIT") && merge_run(m, "DETACH src");
 }

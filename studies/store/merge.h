@@ -3,8 +3,11 @@
 // The same session is recognised by protocol, seed, number, kind, the code it was recorded under, its start and
 // the clock and computer of its first segment. Of two copies the one that goes on further is kept, and only
 // where every answer and every log row of the other stands in it, in the same order; copies that went on
-// differently are refused. Inputs are only read. Numbers that decide trial orders are kept, so that two
-// laboratories' first participants both have number 1.
+// differently are refused. A trial that is done in one and invalid in the other was flagged after its answer:
+// the copy that has it so goes on further, and it is said. Of a person's attributes the fuller ones hold; two
+// values of one attribute are refused, since nothing tells the later one. Which file is named first decides
+// none of this. Inputs are only read. Numbers that decide trial orders are kept, so that two laboratories'
+// first participants both have number 1.
 //
 // Refused, with a sentence: a file that cannot be read, is damaged, or is of another version; people beside
 // simulated observers; several protocols (unless new_protocol); several seeds of one protocol; a code that two

@@ -70,7 +70,7 @@ static const char *const tables[] = {
         "condition_id") ", phase, fade_level, start_ns, cpu_us, gpu_us, present_ns, present_estimated, late,"
                         " gaze_id + ?1, gaze_age_us, fovea, fovea_source, effective, target_x_deg, "
                         "target_y_deg, head_pose, shaded_px,"
-                        " triangles FROM src.frame WHERE session_id " TAKEN " ORDER BY id",
+                        " triangles, target_m FROM src.frame WHERE session_id " TAKEN " ORDER BY id",
     "INSERT INTO main.event SELECT id + ?1, session_id + ?1, segment_id + ?1, trial_id + ?1, at_ns, kind, "
     "detail "
     "FROM src.event WHERE session_id " TAKEN " ORDER BY id",
@@ -137,7 +137,7 @@ bool merge_copy(struct merging *m)
     bool ok = true;
     for (size_t i = 0; ok && maps[i]; i++)
         ok = merge_run(m, maps[i]);
-    ok = ok && add_people(m) && say_errors(m);
+    ok = ok && merge_attributes(m) && add_people(m) && say_errors(m);
     for (size_t i = 0; ok && tables[i]; i++)
         ok = merge_run(m, tables[i]);
     return ok;

@@ -26,6 +26,22 @@ bool merge_run(struct merging *m, const char *sql);
 // False with the sentence of refuse() where the query has a row.
 bool merge_none(struct merging *m, const char *sql, bool (*refuse)(struct merging *m, sqlite3_stmt *row));
 
+enum further { FURTHER_NONE, FURTHER_MAIN, FURTHER_SRC, FURTHER_APART, FURTHER_ERROR };
+
+struct merge_verdict {
+    enum further further; // which of two copies of a session goes on further
+    char table[24];       // where they differ
+    int64_t invalid;      // place of a trial that is invalid in one copy and done in the other; 0: none
+};
+
+// What two parts of a session say together.
+enum further merge_further(enum further a, enum further b);
+// merge_progress.c: adds what the copies' statuses say to the verdict.
+bool merge_progress(struct merging *m, int64_t src, int64_t main_id, struct merge_verdict *out);
+
+// merge_attributes.c: of people in both files, as temp.people names them, the fuller attributes hold.
+bool merge_attributes(struct merging *m);
+
 // Fills temp.take (sessions of src to copy) and temp.twin (src, main); sessions of main that src has further
 // are deleted.
 bool merge_choose(struct merging *m);

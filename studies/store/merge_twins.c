@@ -1,30 +1,19 @@
 // Which sessions of an input the output has already, and whose copy goes on further.
 #include "studies/store/merge_private.h"
+#include "studies/store/sitting.h"
 
 #include <stdio.h>
 #include <string.h>
 
-// A session's code as it was recorded: an earlier merge may have put a laboratory before it.
-#define RECORDED_CODE(schema, session, person)                                                                 \
-    "coalesce((SELECT detail ->> '$.code' FROM " schema ".event WHERE session_id = " session                   \
-    ".id AND kind = 'merged' ORDER BY id LIMIT 1), " person ".code)"
-#define FIRST_SEGMENT(schema, session)                                                                         \
-    "(SELECT id FROM " schema ".segment WHERE session_id = " session ".id ORDER BY id LIMIT 1)"
-
+#define SITTINGS(schema)                                                                                       \
+    "SELECT s.id AS id, " SITTING(schema) " AS sitting FROM " schema ".session AS s JOIN " schema              \
+                                          ".protocol AS o ON o.id = s.protocol_id JOIN " schema                \
+                                          ".participant AS p ON p.id = s.participant_id"
 static const char find_twins[] =
-    "INSERT INTO temp.twin SELECT s.id, m.id FROM src.session AS s JOIN src.protocol AS o ON o.id = "
-    "s.protocol_id "
-    "JOIN src.participant AS p ON p.id = s.participant_id JOIN src.segment AS g ON g.id = " FIRST_SEGMENT(
-        "src",
-        "s") " JOIN main.protocol AS q USING (sha256) JOIN main.session AS m ON m.protocol_id = q.id AND "
-             "m.seed = s.seed AND "
-             "m.started_at = s.started_at JOIN main.participant AS r ON r.id = m.participant_id AND r.number = "
-             "p.number AND "
-             "r.kind = p.kind JOIN main.segment AS h ON h.id = " FIRST_SEGMENT(
-                 "main",
-                 "m") " AND h.mono_origin_ns = g.mono_origin_ns AND h.boot_id IS g.boot_id AND h.started_at = "
-                      "g.started_at WHERE " RECORDED_CODE("src", "s", "p") " = " RECORDED_CODE("main", "m",
-                                                                                               "r");
+    "WITH here AS MATERIALIZED (" SITTINGS("src") "), there AS MATERIALIZED (" SITTINGS(
+        "main") ") INSERT INTO temp.twin SELECT here.id, there.id FROM "
+                "here JOIN there USING (sitting)";
+#undef SITTINGS
 
 // What grows at its end while a session goes on, without ids: the shorter copy must be the beginning of the
 // longer. %s is the schema; ?1 the session.
@@ -50,9 +39,9 @@ static const struct {
     {"exposure", TRIAL_ROWS("x.attempt, option, start_ns, end_ns, full_start_ns, full_end_ns", "exposure")},
     {"gaze", "SELECT device_ns, host_ns, eye, x_deg, y_deg, pupil_mm, valid, confidence FROM %s.gaze WHERE "
              "session_id = ?1 ORDER BY id"},
-    {"gaze_check",
-     "SELECT at_ns, block, x_deg, y_deg, eye, accuracy_deg, loss FROM %s.gaze_check WHERE session_id = "
-     "?1 ORDER BY id"},
+    {"gaze_check", "SELECT at_ns, block, x_deg, y_deg, eye, accuracy_deg, rms_s2s_deg, sd_deg, loss, passed "
+                   "FROM %s.gaze_check WHERE session_id = "
+                   "?1 ORDER BY id"},
     {"frame",
      "SELECT number, option, phase, fade_level, start_ns, present_ns, late, fovea, effective FROM %s.frame "
      "WHERE session_id = ?1 ORDER BY id"},
@@ -62,13 +51,6 @@ static const struct {
      "SELECT t.ordinal, rule, rule_set, reason, applied_at FROM %s.exclusion AS x LEFT JOIN %s.trial AS "
      "t ON t.id = x.trial_id WHERE x.session_id = ?1 OR t.session_id = ?1 ORDER BY x.id"},
 };
-
-// What changes in place: higher is further on.
-static const char progress[] =
-    "SELECT (s.status <> 'running') * 1e9 + coalesce((SELECT sum(attempt) * 4 + sum(status <> 'planned') * 2 + "
-    "sum(status IN ('done', 'skipped', 'invalid')) FROM %s.trial WHERE session_id = s.id), 0) FROM %s.session "
-    "AS s "
-    "WHERE s.id = ?1";
 
 static sqlite3_stmt *prepare(struct merging *m, const char *format, const char *schema, int64_t session)
 {
@@ -95,8 +77,6 @@ static bool same_value(sqlite3_stmt *a, sqlite3_stmt *b, int column)
            0;
 }
 
-enum further { FURTHER_NONE, FURTHER_MAIN, FURTHER_SRC, FURTHER_APART, FURTHER_ERROR };
-
 static enum further compare(struct merging *m, const char *format, int64_t src, int64_t main_id)
 {
     sqlite3_stmt *a = prepare(m, format, "main", main_id), *b = prepare(m, format, "src", src);
@@ -118,29 +98,17 @@ static enum further compare(struct merging *m, const char *format, int64_t src, 
     return result;
 }
 
-static bool compare_progress(struct merging *m, int64_t src, int64_t main_id, enum further *out)
+static bool judge(struct merging *m, int64_t src, int64_t main_id, struct merge_verdict *out)
 {
-    sqlite3_stmt *a = prepare(m, progress, "main", main_id), *b = prepare(m, progress, "src", src);
-    bool ok = a && b && sqlite3_step(a) == SQLITE_ROW && sqlite3_step(b) == SQLITE_ROW;
-    double x = ok ? sqlite3_column_double(a, 0) : 0, y = ok ? sqlite3_column_double(b, 0) : 0;
-    *out = x == y ? FURTHER_NONE : x > y ? FURTHER_MAIN : FURTHER_SRC;
-    sqlite3_finalize(a);
-    sqlite3_finalize(b);
-    return ok || merge_fail_sqlite(m);
-}
-
-static bool which(struct merging *m, int64_t src, int64_t main_id, enum further *out, const char **out_table)
-{
-    if (!compare_progress(m, src, main_id, out))
+    if (!merge_progress(m, src, main_id, out))
         return false;
-    for (size_t i = 0; *out != FURTHER_APART && i < sizeof logs / sizeof logs[0]; i++) {
+    for (size_t i = 0; out->further != FURTHER_APART && i < sizeof logs / sizeof logs[0]; i++) {
         enum further here = compare(m, logs[i].sql, src, main_id);
         if (here == FURTHER_ERROR)
             return merge_fail_sqlite(m);
-        if (here == FURTHER_NONE)
-            continue;
-        *out_table = logs[i].name;
-        *out = *out == FURTHER_NONE || *out == here ? here : FURTHER_APART;
+        if (here != FURTHER_NONE)
+            snprintf(out->table, sizeof out->table, "%s", logs[i].name);
+        out->further = merge_further(out->further, here);
     }
     return true;
 }
@@ -174,23 +142,33 @@ static bool drop_session(struct merging *m, int64_t session)
     return ok;
 }
 
+static void say_once(struct merging *m, const struct merge_verdict *v, int64_t src, const char *code)
+{
+    char invalid[96] = "";
+    if (v->invalid)
+        snprintf(invalid, sizeof invalid, "; trial %lld of its order is invalid there and done in the other",
+                 (long long)v->invalid);
+    merge_say(m, "%s: session %lld of participant %s is in several files; counted once%s%s", m->input->path,
+              (long long)src, code,
+              v->further == FURTHER_SRC    ? ", as this file has it, which goes on further"
+              : v->further == FURTHER_MAIN ? ", as the other file has it, which goes on further"
+                                           : "",
+              invalid);
+}
+
 static bool settle(struct merging *m, int64_t src, int64_t main_id, const char *code)
 {
-    enum further further = FURTHER_NONE;
-    const char *table = "trial";
-    if (!which(m, src, main_id, &further, &table))
+    struct merge_verdict verdict = {.further = FURTHER_NONE};
+    if (!judge(m, src, main_id, &verdict))
         return false;
+    enum further further = verdict.further;
     if (further == FURTHER_APART)
         return merge_fail(
             m,
             "%s: session %lld of participant %s is a copy of one in another file, but both went on "
             "differently (table %s); give the one that holds what happened",
-            m->input->path, (long long)src, code, table);
-    merge_say(m, "%s: session %lld of participant %s is in several files; counted once%s", m->input->path,
-              (long long)src, code,
-              further == FURTHER_SRC    ? ", as this file has it, which goes on further"
-              : further == FURTHER_MAIN ? ", as the other file has it, which goes on further"
-                                        : "");
+            m->input->path, (long long)src, code, verdict.table);
+    say_once(m, &verdict, src, code);
     m->twice++;
     char sql[64];
     if (further != FURTHER_SRC) {

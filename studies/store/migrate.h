@@ -7,7 +7,7 @@
 #include "studies/store/sql.h"
 
 enum {
-    STORE_VERSION = 1,
+    STORE_VERSION = 2,
     STORE_APPLICATION_ID = 0x46565354, // "FVST"
 };
 

@@ -208,13 +208,18 @@ enum store_result sql_reconnect(struct store *store, struct store_error *error)
     return result == STORE_OK ? sql_execute(store, "PRAGMA foreign_keys = ON", error) : result;
 }
 
+// From each version to the next one.
+static const char *const steps[STORE_VERSION - 1] = {
+    "ALTER TABLE frame ADD COLUMN target_m REAL CHECK (target_m > 0)",
+};
+
 static enum store_result prepare_database(struct store *store, const struct store_desc *desc,
                                           struct store_error *error)
 {
     char schema[sizeof schema_sql + 1];
     memcpy(schema, schema_sql, sizeof schema_sql);
     schema[sizeof schema_sql] = '\0';
-    const struct migrate_ladder ladder = {.version = STORE_VERSION, .schema = schema};
+    const struct migrate_ladder ladder = {.version = STORE_VERSION, .schema = schema, .steps = steps};
     enum migrate_state state = MIGRATE_EMPTY;
     enum store_result result = identify(store, desc, &ladder, &state, error);
     if (result == STORE_OK && store->reading)

@@ -38,6 +38,13 @@ void store_reader_fail_sqlite(struct store_reader *reader, int code)
     case SQLITE_NOMEM:
         store_reader_fail(reader, "%s: not enough memory", path);
         return;
+    case SQLITE_READONLY: // nothing but undoing would write
+        store_reader_fail(
+            reader,
+            "%s: another program was stopped while it wrote, and %s-journal knows how to undo it; open "
+            "both with sqlite3 once",
+            path, path);
+        return;
     default:
         store_reader_fail(reader, "%s: cannot be read: %s", path,
                           reader->db ? sqlite3_errmsg(reader->db) : sqlite3_errstr(code));
@@ -58,6 +65,24 @@ static bool pragma_int(struct store_reader *reader, const char *sql, int *out)
     return code == SQLITE_ROW;
 }
 
+// What each version lacks of the next one, in the place of the table: a name without a schema's is looked for
+// among the temporary ones first.
+static const char *const missing[STORE_VERSION - 1] = {
+    "CREATE TEMP VIEW frame AS SELECT *, NULL AS target_m FROM main.frame",
+};
+
+static bool complete_older(struct store_reader *reader)
+{
+    int code = sqlite3_exec(reader->db, "PRAGMA query_only = OFF", NULL, NULL, NULL);
+    for (int i = reader->version - 1; i < STORE_VERSION - 1 && code == SQLITE_OK; i++)
+        code = sqlite3_exec(reader->db, missing[i], NULL, NULL, NULL);
+    if (code == SQLITE_OK)
+        code = sqlite3_exec(reader->db, "PRAGMA query_only = ON", NULL, NULL, NULL);
+    if (code != SQLITE_OK)
+        store_reader_fail_sqlite(reader, code);
+    return code == SQLITE_OK;
+}
+
 static bool is_study(struct store_reader *reader)
 {
     int application = 0, version = 0;
@@ -70,16 +95,18 @@ static bool is_study(struct store_reader *reader)
     }
     if (version > STORE_VERSION) {
         store_reader_fail(reader,
-                          "%s: was written by a newer program (version %d of the file, this program knows %d)",
+                          "%s: was written by a newer program (version %d of the file, this program knows %d); "
+                          "use that program",
                           reader->path, version, STORE_VERSION);
         return false;
     }
-    if (version < STORE_VERSION) {
+    if (version < 1) {
         store_reader_fail(reader, "%s: is of an older version (%d, now %d); open it once with fovstudy resume",
                           reader->path, version, STORE_VERSION);
         return false;
     }
-    return true;
+    reader->version = version;
+    return version == STORE_VERSION || complete_older(reader);
 }
 
 static bool side_file(const struct store_reader *reader, const char *suffix)
@@ -90,14 +117,14 @@ static bool side_file(const struct store_reader *reader, const char *suffix)
     return found;
 }
 
-// Nobody writes where there is neither a write-ahead log nor an owner's lock. Such a file is opened as one that
-// does not change: SQLite then leaves no files of its own beside it, and a write-protected folder is no
-// hindrance. Should somebody begin to write after all, store_reader_unchanged() finds out. A path with letters
-// that mean something in a URI is opened the plain way.
+// Nobody writes where there is neither a write-ahead log, nor a journal of another program, nor an owner's
+// lock. Such a file is opened as one that does not change: SQLite then leaves no files of its own beside it,
+// and a write-protected folder is no hindrance. Should somebody begin to write after all,
+// store_reader_unchanged() finds out. A path with letters that mean something in a URI is opened the plain way.
 static bool at_rest(const struct store_reader *reader)
 {
-    return !side_file(reader, "-wal") && !side_file(reader, "-owner") && !strpbrk(reader->path, "?#%") &&
-           strncmp(reader->path, "//", 2) != 0;
+    return !side_file(reader, "-wal") && !side_file(reader, "-journal") && !side_file(reader, "-owner") &&
+           !strpbrk(reader->path, "?#%") && strncmp(reader->path, "//", 2) != 0;
 }
 
 // A reader belongs to one thread: without a mutex a sample is read in two thirds of the time.
@@ -177,13 +204,66 @@ struct store_reader *store_reader_open(const char *path, char *error, size_t err
     return NULL;
 }
 
+bool store_reader_rises(struct store_reader *reader, int64_t id, int64_t *last)
+{
+    if (id <= *last)
+        store_reader_fail_sqlite(reader, SQLITE_CORRUPT);
+    bool rises = id > *last;
+    *last = id;
+    return rises;
+}
+
+// SQLite finds a row by its index without comparing the two.
+static bool whole(struct store_reader *reader, const char *table)
+{
+    static const char sql[] =
+        "SELECT (SELECT count(*) FROM pragma_integrity_check(?1) WHERE integrity_check <> 'ok') + "
+        "(SELECT count(*) FROM pragma_foreign_key_check(?1))";
+    sqlite3_stmt *statement = NULL;
+    int64_t faults = 0;
+    int code = sqlite3_prepare_v2(reader->db, sql, -1, &statement, NULL);
+    if (code == SQLITE_OK)
+        code = sqlite3_bind_text(statement, 1, table, -1, SQLITE_STATIC);
+    if (code == SQLITE_OK)
+        code = sqlite3_step(statement);
+    if (code == SQLITE_ROW)
+        faults = sqlite3_column_int64(statement, 0);
+    else
+        store_reader_fail_sqlite(reader, code);
+    sqlite3_finalize(statement);
+    if (code == SQLITE_ROW && faults)
+        store_reader_fail(
+            reader,
+            "%s: the study file is damaged (table %s); use a backup, or try sqlite3's .recover on a copy",
+            reader->path, table);
+    return code == SQLITE_ROW && faults == 0;
+}
+
+bool store_reader_whole(struct store_reader *reader, bool logs)
+{
+    static const char *const tables[] = {
+        "protocol",       "participant", "session",    "segment",     "condition", "trial",
+        "choice",         "rating",      "response",   "adjust_step", "exposure",  "staircase_step",
+        "measured_error", "event",       "gaze_check", "exclusion",   NULL};
+    for (int i = 0; tables[i]; i++)
+        if (!whole(reader, tables[i]))
+            return false;
+    return !logs || (whole(reader, "gaze") && whole(reader, "frame"));
+}
+
 void store_reader_close(struct store_reader *reader)
 {
     if (!reader)
         return;
+    sqlite3_finalize(reader->after);
     sqlite3_close(reader->db);
     free(reader->path);
     free(reader);
+}
+
+int store_reader_version(const struct store_reader *reader)
+{
+    return reader->version;
 }
 
 const char *store_reader_path(const struct store_reader *reader)

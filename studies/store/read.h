@@ -4,7 +4,8 @@
 // one after another, to a function of the caller; the row and its texts are borrowed until that function
 // returns. The function returns false to stop; the call then returns false with an empty store_reader_error().
 //
-// Numbers that are NULL in the file come as NaN (double) or as said below; texts that are NULL come as "".
+// Numbers that are NULL in the file come as NaN (double) or as said below, measurements also where they are not
+// finite; texts that are NULL come as "".
 // Times, units and angles are those of schema.sql. All rows come in an order that depends on nothing but the
 // data.
 //
@@ -20,10 +21,16 @@
 struct store_reader;
 
 // NULL with a sentence naming the file in `error` where it is missing, a folder, not SQLite, another program's,
-// of another schema version than this program's, or damaged.
+// of a newer schema version than this program's, or damaged. What a file of an older version does not have is
+// NULL; the file is left as it is.
 struct store_reader *store_reader_open(const char *path, char *error, size_t error_size);
+// False with a sentence where a table or an index is damaged, or a row refers to one that is not there: queries
+// would then pass over rows without a word. Gaze samples and frames, which are many, only where `logs` asks for
+// them.
+bool store_reader_whole(struct store_reader *reader, bool logs);
 void store_reader_close(struct store_reader *reader); // NULL is fine
 const char *store_reader_path(const struct store_reader *reader);
+int store_reader_version(const struct store_reader *reader); // of the file's schema
 // A sentence naming the file after a call that returned false; "" where the caller's function stopped it.
 const char *store_reader_error(const struct store_reader *reader);
 
@@ -47,6 +54,8 @@ struct store_session_row {
     // where the protocol has one; "" where none was planned, or an earlier version recorded the session.
     const char *planned;
     const char *title; // of the study; "" where an earlier version recorded the session
+    // The same for the same sitting, whatever file it stands in and under whatever laboratory's name.
+    const char *sitting;
 };
 
 // A member of a JSON object: a factor, a parameter, an attribute.
@@ -65,7 +74,7 @@ struct store_trial_row {
     // The answer, where there is one:
     int64_t choice_id; // 0: none
     char chosen;       // 't' test, 'r' reference, '=' equal, '?' no test slot; 0: no answer
-    bool chosen_first; // the option that was shown first
+    int chosen_first;  // the option that was shown first: 1, 0, or -1: not known
     bool chosen_a;     // slot a
     int correct;       // 1, 0, or -1: a preference, or no answer
     double reaction_s; // NaN: not known
@@ -99,6 +108,7 @@ struct store_frame_row {
 struct store_exclusion_row {
     int64_t trial_id, session_id, participant_id; // two of them are 0
     const char *rule, *rule_set, *reason, *by;
+    bool ratings_only; // a choice in the same trial stays
 };
 
 // A trial of a staircase that was answered: what was shown and what came of it.

@@ -13,6 +13,7 @@ struct call {
     store_moment_fn moment;
     store_audit_frame_fn frame;
     store_exposure_fn exposure;
+    int id; // the column of the id that rows are in the order of; 0: none
 };
 
 static bool read_all(struct store_reader *reader, const char *sql,
@@ -22,8 +23,10 @@ static bool read_all(struct store_reader *reader, const char *sql,
     reader->error[0] = '\0';
     int code = sqlite3_prepare_v2(reader->db, sql, -1, &statement, NULL);
     bool going = code == SQLITE_OK;
+    int64_t last = INT64_MIN;
     while (going && (code = sqlite3_step(statement)) == SQLITE_ROW)
-        going = row(statement, call);
+        going = (!call->id || store_reader_rises(reader, sqlite3_column_int64(statement, call->id), &last)) &&
+                row(statement, call);
     if (code != SQLITE_DONE && code != SQLITE_ROW) {
         store_reader_fail_sqlite(reader, code);
         going = false;
@@ -147,28 +150,50 @@ static bool frame_row(sqlite3_stmt *s, const struct call *call)
         .gaze_id = sqlite3_column_int64(s, 13),
         .gaze_age_ms =
             sqlite3_column_type(s, 14) == SQLITE_NULL ? (double)NAN : sqlite3_column_double(s, 14) / 1e3,
-        .blink = sqlite3_column_int(s, 15),
-        .other_eye = sqlite3_column_int(s, 16),
-        .same_fovea = same_fovea((const char *)sqlite3_column_text(s, 17)),
-        .differs = sqlite3_column_int(s, 18),
+        .same_fovea = same_fovea((const char *)sqlite3_column_text(s, 15)),
+        .differs = sqlite3_column_int(s, 16),
     };
     return call->frame(call->user, &row);
 }
 
 bool store_read_audit_frames(struct store_reader *reader, store_audit_frame_fn each, void *user)
 {
-    // Of two eyes, samples alternate: a blink shows in one of the next two.
     static const char sql[] =
         "SELECT f.session_id, f.segment_id, f.trial_id, f.attempt, f.number, f.start_ns, f.option, f.phase,"
         " f.fade_level, f.condition_id, c.mode NOT IN ('regular', 'ray_traced_full'), f.late, f.fovea_source,"
-        " f.gaze_id, f.gaze_age_us, coalesce(m.valid = 0, 0) OR coalesce(n.valid = 0, 0),"
-        " coalesce(m.valid = 1 AND m.eye <> 'both' AND g.eye <> 'both' AND m.eye <> g.eye, 0), f.fovea,"
+        " f.gaze_id, f.gaze_age_us, f.fovea,"
         " " NOT_AS_ASKED(
-            "f.") " FROM frame f LEFT JOIN condition c ON c.id = f.condition_id"
-                  " LEFT JOIN gaze g ON g.id = f.gaze_id"
-                  " LEFT JOIN gaze m ON m.id = f.gaze_id + 1 AND m.segment_id = f.segment_id"
-                  " LEFT JOIN gaze n ON n.id = f.gaze_id + 2 AND n.segment_id = f.segment_id ORDER BY f.id";
-    return read_all(reader, sql, frame_row, &(struct call){.user = user, .frame = each});
+            "f.") ", f.id FROM frame f LEFT JOIN condition c ON c.id = f.condition_id ORDER BY f.id";
+    return read_all(reader, sql, frame_row, &(struct call){.user = user, .frame = each, .id = 17});
+}
+
+bool store_read_gaze_after(struct store_reader *reader, int64_t gaze_id, int64_t segment_id,
+                           struct store_gaze_after *out)
+{
+    // Of two eyes, samples alternate: a blink shows in one of the next two.
+    static const char sql[] =
+        "SELECT coalesce(m.valid = 0, 0) OR coalesce(n.valid = 0, 0),"
+        " coalesce(m.valid = 1 AND m.eye <> 'both' AND g.eye <> 'both' AND m.eye <> g.eye, 0) FROM (SELECT 1)"
+        " LEFT JOIN gaze g ON g.id = ?1 LEFT JOIN gaze m ON m.id = ?1 + 1 AND m.segment_id = ?2"
+        " LEFT JOIN gaze n ON n.id = ?1 + 2 AND n.segment_id = ?2";
+    int code = SQLITE_OK;
+    *out = (struct store_gaze_after){0};
+    if (gaze_id == 0)
+        return true;
+    if (!reader->after)
+        code = sqlite3_prepare_v2(reader->db, sql, -1, &reader->after, NULL);
+    if (code == SQLITE_OK) {
+        sqlite3_bind_int64(reader->after, 1, gaze_id);
+        sqlite3_bind_int64(reader->after, 2, segment_id);
+        code = sqlite3_step(reader->after);
+    }
+    if (code == SQLITE_ROW)
+        *out = (struct store_gaze_after){sqlite3_column_int(reader->after, 0) != 0,
+                                         sqlite3_column_int(reader->after, 1) != 0};
+    else
+        store_reader_fail_sqlite(reader, code);
+    sqlite3_reset(reader->after);
+    return code == SQLITE_ROW;
 }
 
 static bool exposure_row(sqlite3_stmt *s, const struct call *call)

@@ -2,18 +2,20 @@
 
 #include "studies/protocol/sha256.h"
 #include "studies/store/read_private.h"
+#include "studies/store/sitting.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#define RECORDED_CODE SITTING_CODE("main", "session", "participant")
+
 // ?1 is the session. Columns and orders are part of the digest: changing one changes every digest.
 static const char *const queries[] = {
-    "SELECT protocol.name, protocol.sha256, code, number, kind, attributes, seed, status, started_at, "
-    "ended_at, "
-    "device, driver, display, refresh_hz, width_px, height_px, fov_deg, session.settings FROM session "
-    "JOIN protocol ON protocol.id = protocol_id JOIN participant ON participant.id = participant_id "
-    "WHERE session.id = ?1",
+    "SELECT protocol.name, protocol.sha256, " RECORDED_CODE ", number, kind, attributes, seed, status, "
+    "started_at, ended_at, device, driver, display, refresh_hz, width_px, height_px, fov_deg, session.settings "
+    "FROM session JOIN protocol ON protocol.id = protocol_id JOIN participant ON participant.id = "
+    "participant_id WHERE session.id = ?1",
     "SELECT started_at, clock, app_version, reason FROM segment WHERE session_id = ?1 ORDER BY segment.id",
     "SELECT trial.ordinal, trial.block, trial.kind, trial.scene, trial.settings, trial.factors, a.mode, "
     "a.parameters, b.mode, b.parameters, trial.test_slot, trial.first_shown, trial.fixation, trial.seed, "

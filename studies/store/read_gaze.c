@@ -12,6 +12,7 @@ struct call {
     store_target_fn target;
     store_gaze_use_fn use;
     store_gaze_check_fn check;
+    int id; // the column of the id that rows are in the order of; 0: none
 };
 
 static bool read_all(struct store_reader *reader, const char *sql, int64_t bound,
@@ -23,8 +24,10 @@ static bool read_all(struct store_reader *reader, const char *sql, int64_t bound
     bool going = code == SQLITE_OK;
     if (going && bound)
         sqlite3_bind_int64(statement, 1, bound);
+    int64_t last = INT64_MIN;
     while (going && (code = sqlite3_step(statement)) == SQLITE_ROW)
-        going = row(statement, call);
+        going = (!call->id || store_reader_rises(reader, sqlite3_column_int64(statement, call->id), &last)) &&
+                row(statement, call);
     if (code != SQLITE_DONE && code != SQLITE_ROW) {
         store_reader_fail_sqlite(reader, code);
         going = false;
@@ -46,9 +49,11 @@ static const char *text(sqlite3_stmt *s, int column)
     return value ? (const char *)value : "";
 }
 
+// A measurement that is no number is not known.
 static double real(sqlite3_stmt *s, int column)
 {
-    return sqlite3_column_type(s, column) == SQLITE_NULL ? (double)NAN : sqlite3_column_double(s, column);
+    double value = sqlite3_column_double(s, column);
+    return sqlite3_column_type(s, column) != SQLITE_NULL && isfinite(value) ? value : (double)NAN;
 }
 
 static bool sample_row(sqlite3_stmt *s, const struct call *call)
@@ -68,8 +73,8 @@ static bool sample_row(sqlite3_stmt *s, const struct call *call)
 bool store_read_gaze(struct store_reader *reader, store_gaze_sample_fn each, void *user)
 {
     static const char sql[] = "SELECT session_id, segment_id, trial_id, device_ns, host_ns, eye, x_deg, y_deg,"
-                              " valid FROM gaze ORDER BY id";
-    return read_all(reader, sql, 0, sample_row, &(struct call){.user = user, .sample = each}) &&
+                              " valid, id FROM gaze ORDER BY id";
+    return read_all(reader, sql, 0, sample_row, &(struct call){.user = user, .sample = each, .id = 9}) &&
            store_reader_unchanged(reader);
 }
 
@@ -85,7 +90,8 @@ static bool trial_row(sqlite3_stmt *s, const struct call *call)
                                    .fixation = text(s, 6),
                                    .done = sqlite3_column_int(s, 7),
                                    .practice = sqlite3_column_int(s, 8),
-                                   .tracker = sqlite3_column_int(s, 9)};
+                                   .tracker = sqlite3_column_int(s, 9),
+                                   .ipd_m = real(s, 10)};
     return call->trial(call->user, &row);
 }
 
@@ -93,7 +99,8 @@ bool store_read_gaze_trials(struct store_reader *reader, store_gaze_trial_fn eac
 {
     static const char sql[] =
         "SELECT t.id, t.session_id, t.segment_id, t.ordinal, t.started_ns, t.ended_ns, t.fixation,"
-        " t.status = 'done', t.kind = 'practice', coalesce(s.settings ->> '$.gaze', 'none') <> 'none'"
+        " t.status = 'done', t.kind = 'practice', coalesce(s.settings ->> '$.gaze', 'none') <> 'none',"
+        " CASE WHEN json_type(s.settings, '$.ipd_m') IN ('real', 'integer') THEN s.settings ->> '$.ipd_m' END"
         " FROM trial t JOIN session s ON s.id = t.session_id ORDER BY t.id";
     return read_all(reader, sql, 0, trial_row, &(struct call){.user = user, .trial = each}) &&
            store_reader_unchanged(reader);
@@ -104,14 +111,15 @@ static bool target_row(sqlite3_stmt *s, const struct call *call)
     struct store_target_row row = {.segment_id = sqlite3_column_int64(s, 0),
                                    .shown_ns = sqlite3_column_int64(s, 1),
                                    .x_deg = real(s, 2),
-                                   .y_deg = real(s, 3)};
+                                   .y_deg = real(s, 3),
+                                   .distance_m = real(s, 4)};
     return call->target(call->user, &row);
 }
 
 bool store_read_targets(struct store_reader *reader, int64_t trial_id, store_target_fn each, void *user)
 {
     static const char sql[] =
-        "SELECT segment_id, coalesce(present_ns, start_ns), target_x_deg, target_y_deg FROM frame"
+        "SELECT segment_id, coalesce(present_ns, start_ns), target_x_deg, target_y_deg, target_m FROM frame"
         " WHERE trial_id = ?1 AND phase = 'stimulus' AND target_x_deg IS NOT NULL AND target_y_deg IS NOT NULL"
         " ORDER BY id";
     return read_all(reader, sql, trial_id, target_row, &(struct call){.user = user, .target = each});
@@ -119,6 +127,8 @@ bool store_read_targets(struct store_reader *reader, int64_t trial_id, store_tar
 
 static bool use_row(sqlite3_stmt *s, const struct call *call)
 {
+    if (!sqlite3_column_int(s, 5))
+        return true;
     struct store_gaze_use row = {.session_id = sqlite3_column_int64(s, 0),
                                  .age_ms = real(s, 1) / 1e3,
                                  .to_light_ms = real(s, 2) / 1e6,
@@ -130,10 +140,9 @@ static bool use_row(sqlite3_stmt *s, const struct call *call)
 bool store_read_gaze_uses(struct store_reader *reader, store_gaze_use_fn each, void *user)
 {
     static const char sql[] =
-        "SELECT session_id, gaze_age_us, present_ns - start_ns, present_estimated,"
-        " fovea_source = 'lost' FROM frame WHERE phase = 'stimulus' AND fovea_source IN ('gaze', 'lost')"
-        " ORDER BY id";
-    return read_all(reader, sql, 0, use_row, &(struct call){.user = user, .use = each}) &&
+        "SELECT session_id, gaze_age_us, present_ns - start_ns, present_estimated, fovea_source = 'lost',"
+        " phase = 'stimulus' AND fovea_source IN ('gaze', 'lost'), id FROM frame ORDER BY id";
+    return read_all(reader, sql, 0, use_row, &(struct call){.user = user, .use = each, .id = 6}) &&
            store_reader_unchanged(reader);
 }
 

@@ -2,6 +2,7 @@
 #include "studies/store/read.h"
 
 #include "studies/store/read_private.h"
+#include "studies/store/sitting.h"
 
 #include <math.h>
 #include <string.h>
@@ -17,6 +18,7 @@ struct call {
     store_exclusion_fn exclusion;
     store_step_fn step;
     store_adjusted_fn adjusted;
+    int id; // the column of the id that rows are in the order of; 0: none
 };
 
 typedef bool (*row_fn)(sqlite3_stmt *statement, const struct call *call);
@@ -31,8 +33,10 @@ static bool read_rows(struct store_reader *reader, const char *sql, row_fn row, 
         return false;
     }
     bool going = true;
+    int64_t last = INT64_MIN;
     while (going && (code = sqlite3_step(statement)) == SQLITE_ROW)
-        going = row(statement, call);
+        going = (!call->id || store_reader_rises(reader, sqlite3_column_int64(statement, call->id), &last)) &&
+                row(statement, call);
     if (going && code != SQLITE_DONE) {
         store_reader_fail_sqlite(reader, code);
         going = false;
@@ -53,6 +57,13 @@ static double real(sqlite3_stmt *statement, int column)
                                                                  : sqlite3_column_double(statement, column);
 }
 
+// A measurement that is no number is not known.
+static double finite_real(sqlite3_stmt *statement, int column)
+{
+    double value = real(statement, column);
+    return isfinite(value) ? value : (double)NAN;
+}
+
 static bool session_row(sqlite3_stmt *s, const struct call *call)
 {
     struct store_session_row row = {
@@ -70,7 +81,7 @@ static bool session_row(sqlite3_stmt *s, const struct call *call)
         .device = text(s, 11),
         .driver = text(s, 12),
         .display = text(s, 13),
-        .refresh_hz = real(s, 14),
+        .refresh_hz = finite_real(s, 14),
         .width_px = real(s, 15),
         .height_px = real(s, 16),
         .fov_deg = real(s, 17),
@@ -81,10 +92,12 @@ static bool session_row(sqlite3_stmt *s, const struct call *call)
         .observer = text(s, 22),
         .planned = text(s, 23),
         .title = text(s, 24),
+        .sitting = text(s, 25),
     };
     return call->session(call->user, &row);
 }
 
+#define THIS_SITTING SITTING("main")
 bool store_read_sessions(struct store_reader *reader, store_session_fn each, void *user)
 {
     static const char sql[] =
@@ -103,7 +116,7 @@ bool store_read_sessions(struct store_reader *reader, store_session_fn each, voi
         "   (value ->> '$.per') || iif(value ->> '$.margin' IS NULL, '', printf(' %.15g', value ->> "
         "'$.margin')),"
         "   char(10)) FROM json_each(s.settings, '$.planned')), ''),"
-        " coalesce(s.settings ->> '$.title', '')"
+        " coalesce(s.settings ->> '$.title', ''), " THIS_SITTING
         " FROM session s JOIN participant p ON p.id = s.participant_id JOIN protocol o ON o.id = s.protocol_id"
         " ORDER BY s.id";
     return read_rows(reader, sql, session_row, &(struct call){.user = user, .session = each});
@@ -116,7 +129,7 @@ static bool member_row(sqlite3_stmt *s, const struct call *call)
         .owner = sqlite3_column_int64(s, 0),
         .owner_text = text(s, 1),
         .key = text(s, 2),
-        .number = number ? sqlite3_column_double(s, 4) : (double)NAN,
+        .number = number ? finite_real(s, 4) : (double)NAN,
         .value = text(s, 3),
     };
     return call->member(call->user, &row);
@@ -167,7 +180,7 @@ static bool trial_row(sqlite3_stmt *s, const struct call *call)
         .choice_id = sqlite3_column_int64(s, 11),
         .reaction_s = real(s, 13),
         .toggles = sqlite3_column_int64(s, 14),
-        .chosen_first = sqlite3_column_int(s, 15),
+        .chosen_first = sqlite3_column_type(s, 15) == SQLITE_NULL ? -1 : sqlite3_column_int(s, 15),
         .chosen_a = strcmp(chosen, "a") == 0,
         .correct = sqlite3_column_type(s, 17) == SQLITE_NULL ? -1 : sqlite3_column_int(s, 17),
         .attempt = sqlite3_column_int64(s, 18),
@@ -236,11 +249,11 @@ static bool frame_row(sqlite3_stmt *s, const struct call *call)
         .condition_id = sqlite3_column_int64(s, 4),
         .phase = text(s, 5),
         .start_ns = sqlite3_column_int64(s, 6),
-        .cpu_us = real(s, 7),
-        .gpu_us = real(s, 8),
+        .cpu_us = finite_real(s, 7),
+        .gpu_us = finite_real(s, 8),
         .late = sqlite3_column_int(s, 9),
         .late_known = sqlite3_column_type(s, 9) != SQLITE_NULL,
-        .gaze_age_us = real(s, 10),
+        .gaze_age_us = finite_real(s, 10),
         .shaded_px = real(s, 11),
         .simulated_clock = sqlite3_column_int(s, 12),
         .attempt = sqlite3_column_int64(s, 13),
@@ -250,11 +263,12 @@ static bool frame_row(sqlite3_stmt *s, const struct call *call)
 
 bool store_read_frames(struct store_reader *reader, store_frame_fn each, void *user)
 {
-    static const char sql[] = "SELECT f.session_id, f.segment_id, f.trial_id, f.number, f.condition_id, "
-                              "f.phase, f.start_ns, f.cpu_us,"
-                              " f.gpu_us, f.late, f.gaze_age_us, f.shaded_px, g.clock = 'simulated', f.attempt"
-                              " FROM frame f JOIN segment g ON g.id = f.segment_id ORDER BY f.id";
-    return read_rows(reader, sql, frame_row, &(struct call){.user = user, .frame = each});
+    static const char sql[] =
+        "SELECT f.session_id, f.segment_id, f.trial_id, f.number, f.condition_id, "
+        "f.phase, f.start_ns, f.cpu_us,"
+        " f.gpu_us, f.late, f.gaze_age_us, f.shaded_px, g.clock = 'simulated', f.attempt, f.id"
+        " FROM frame f LEFT JOIN segment g ON g.id = f.segment_id ORDER BY f.id";
+    return read_rows(reader, sql, frame_row, &(struct call){.user = user, .frame = each, .id = 14});
 }
 
 static bool exclusion_row(sqlite3_stmt *s, const struct call *call)
@@ -267,14 +281,16 @@ static bool exclusion_row(sqlite3_stmt *s, const struct call *call)
         .rule_set = text(s, 4),
         .reason = text(s, 5),
         .by = text(s, 6),
+        .ratings_only = sqlite3_column_int(s, 7),
     };
     return call->exclusion(call->user, &row);
 }
 
 bool store_read_exclusions(struct store_reader *reader, store_exclusion_fn each, void *user)
 {
-    static const char sql[] = "SELECT trial_id, session_id, participant_id, rule, rule_set, reason, \"by\""
-                              " FROM exclusion ORDER BY id";
+    static const char sql[] =
+        "SELECT trial_id, session_id, participant_id, rule, rule_set, reason, \"by\", " RATINGS_ONLY(
+            "exclusion") " FROM exclusion ORDER BY id";
     return read_rows(reader, sql, exclusion_row, &(struct call){.user = user, .exclusion = each});
 }
 

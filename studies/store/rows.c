@@ -106,7 +106,8 @@ static enum store_result write_frame(struct store *store, const struct queue_log
                                        sql_real(frame->target_y_deg),
                                        sql_text(pose),
                                        sql_integer(frame->shaded_px),
-                                       sql_integer(frame->triangles)};
+                                       sql_integer(frame->triangles),
+                                       sql_real(frame->target_m)};
     enum store_result result = sql_run(store, SQL_INSERT_FRAME, values, countof(values), NULL, error);
     sqlite3_free(fovea);
     sqlite3_free(pose);

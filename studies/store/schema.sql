@@ -9,7 +9,7 @@
 -- A change of anything below needs a new user_version and a step in migrate.c.
 
 PRAGMA application_id = 1180062548; -- the bytes "FVST"
-PRAGMA user_version = 1;
+PRAGMA user_version = 2;
 
 -- A protocol file, as it was read.
 CREATE TABLE protocol (
@@ -243,12 +243,15 @@ CREATE TABLE frame (
     fovea_source TEXT CHECK (fovea_source IN ('gaze', 'target', 'fixed', 'lost')),
     -- JSON of what was really rendered, where it differs from the condition
     effective TEXT CHECK (effective IS NULL OR json_valid(effective)),
-    target_x_deg REAL, -- the fixation target
+    target_x_deg REAL, -- the fixation target, from the middle between the eyes
     target_y_deg REAL,
     -- JSON {"position":[x,y,z],"orientation":[x,y,z,w]}, metres, world
     head_pose TEXT CHECK (head_pose IS NULL OR json_valid(head_pose)),
     shaded_px INTEGER, -- pixels of both eyes shaded
-    triangles INTEGER  -- both eyes, after culling
+    triangles INTEGER, -- both eyes, after culling
+    -- Metres from the middle between the eyes to the fixation target; each eye sees it in a direction of its own.
+    -- NULL: no target, or a file of version 1, which did not keep it.
+    target_m REAL CHECK (target_m > 0)
 ) STRICT;
 CREATE INDEX frame_trial ON frame (trial_id);
 CREATE INDEX frame_gaze ON frame (gaze_id) WHERE gaze_id IS NOT NULL;

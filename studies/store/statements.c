@@ -96,9 +96,9 @@ const char *const sql_statements[SQL_STATEMENTS] = {
         "INSERT INTO frame (session_id, segment_id, trial_id, attempt, number, option, "
         "condition_id, phase, fade_level, start_ns, cpu_us, gpu_us, present_ns, "
         "present_estimated, late, gaze_id, gaze_age_us, fovea, fovea_source, effective, "
-        "target_x_deg, target_y_deg, head_pose, shaded_px, triangles) "
+        "target_x_deg, target_y_deg, head_pose, shaded_px, triangles, target_m) "
         "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, "
-        "?19, ?20, ?21, ?22, ?23, ?24, ?25)",
+        "?19, ?20, ?21, ?22, ?23, ?24, ?25, ?26)",
     [SQL_INSERT_EXPOSURE] = "INSERT INTO exposure (trial_id, segment_id, attempt, option, start_ns, end_ns, "
                             "full_start_ns, full_end_ns) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)",
     [SQL_INSERT_EVENT] = "INSERT INTO event (session_id, segment_id, trial_id, at_ns, kind, detail) "

@@ -328,6 +328,7 @@ struct store_frame {
     enum store_fovea fovea_source;
     const char *effective; // JSON, copied; NULL: as the condition says
     double target_x_deg, target_y_deg;
+    double target_m;       // from the middle between the eyes, as the direction is; NaN: no target
     struct pose head_pose; // an orientation of all zero: not known
     int64_t shaded_px, triangles;
 };

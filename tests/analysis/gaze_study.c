@@ -1,7 +1,7 @@
 // Writes a study with as much gaze as asked for: gaze_study FILE PEOPLE TRIALS SECONDS GAZE_HZ FRAME_HZ.
 // Simulated people, one cell of choices, fixations and saccades along a main sequence of 600 deg/s and 6
-// degrees; in every other trial a target at rest, half a degree left of where the eyes are. FRAME_HZ 0: no
-// frames.
+// degrees; in every other trial a target at rest, half a degree left of where the eyes are and two metres away.
+// FRAME_HZ 0: no frames.
 #include <math.h>
 #include <stdarg.h>
 #include <stdbool.h>
@@ -147,7 +147,7 @@ static void write_person(struct study *s, int person)
         "BEGIN; INSERT INTO participant VALUES (%d, %d, 'S%03d', 'simulated', '{\"age\":30}');"
         "INSERT INTO session VALUES (%d, 1, %d, 1, 'complete', '2026-01-01T10:00:00Z', '2026-01-01T11:00:00Z', "
         "NULL,"
-        " NULL, 'gpu', 'driver', 'headless', 90, 640, 720, 100, '{\"gaze\":\"sim\"}');"
+        " NULL, 'gpu', 'driver', 'headless', 90, 640, 720, 100, '{\"gaze\":\"sim\",\"ipd_m\":0.063}');"
         "INSERT INTO segment VALUES (%d, %d, '2026-01-01T10:00:00Z', 0, 'simulated', NULL, 'test', 'start');",
         person, person, person, person, person, person, person);
     for (int i = 0; i < s->trials; i++) {
@@ -196,7 +196,7 @@ int main(int argc, char **argv)
             s.db,
             "INSERT INTO frame VALUES (NULL, ?1, ?1, ?2, 1, ?3, ?4, ?5, 'stimulus', 0, ?6, 1000, ?7, ?8, 1, 0,"
             " ?9, 2000, '{\"left\":[1.25,2.5],\"right\":[1.5,2.5]}', 'gaze', NULL, ?10, ?11,"
-            " '{\"position\":[1,2,3],\"orientation\":[0,0,0,1]}', 100000, 200000)",
+            " '{\"position\":[1,2,3],\"orientation\":[0,0,0,1]}', 100000, 200000, iif(?10 IS NULL, NULL, 2))",
             -1, &s.frame, NULL));
     for (int person = 1; person <= s.people; person++)
         write_person(&s, person);

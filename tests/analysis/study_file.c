@@ -46,6 +46,13 @@ void study_file_sql(const char *path, const char *sql)
     sqlite3_close(db);
 }
 
+void study_file_even(const char *path)
+{
+    study_file_sql(path,
+                   "UPDATE choice SET chosen = (SELECT iif((trial_id / 10 <= iif(trial_id % 10 = 1, 11, 9)) = "
+                   "(test_slot = 'a'), 'a', 'b') FROM trial WHERE trial.id = trial_id)");
+}
+
 static void apply_schema(sqlite3 *db)
 {
     char path[512];

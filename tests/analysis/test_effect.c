@@ -30,6 +30,13 @@ static size_t compute(const char *what, double conf, const double *x, size_t n, 
         return stat_adjust_hochberg(x, n, out), n;
     if (strcmp(what, "bh") == 0)
         return stat_adjust_bh(x, n, out), n;
+    if (strcmp(what, "exclusive") == 0) {
+        size_t sets[MOST];
+        assert_int_equal(n, n_y);
+        for (size_t i = 0; i < n; i++)
+            sets[i] = (size_t)y[i];
+        return stat_adjust_exclusive(x, sets, n, out), n;
+    }
     if (strcmp(what, "one") == 0) {
         e = stat_effect_one_sample(x, n, 0, conf);
     } else if (strcmp(what, "two") == 0) {

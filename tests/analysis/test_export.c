@@ -77,7 +77,7 @@ static void bad_input_has_a_sentence(void **state)
     expect_fails(EXPORT("a.db", "-o", "nofolder/d"), 1, "cannot be made", "nofolder/d");
     study_file_sql("a.db", "PRAGMA user_version = 0"); // what a store of the version before would have written
     expect_fails(EXPORT("a.db", "-o", "d"), 1, "older version", "d");
-    study_file_sql("a.db", "PRAGMA user_version = 1");
+    study_file_sql("a.db", "PRAGMA user_version = 2");
     assert_int_equal(truncate("a.db", 61440), 0);
     expect_fails(EXPORT("a.db", "-o", "d"), 1, "damaged", "d");
     study_file_make("a.db", &(struct study_desc){.pooled = false});

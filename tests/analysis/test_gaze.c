@@ -57,6 +57,14 @@ static void check_angle(const struct row *r)
         fail_msg("%s: %.17g, R has %.17g", r->name, gaze_angle_deg(&p, &q), r->b[0]);
 }
 
+static void check_eye(const struct row *r)
+{
+    struct gaze_point middle = gaze_point(7, r->a[0], r->a[1]),
+                      p = gaze_point_from_eye(&middle, r->a[2], r->a[3]);
+    if (fabs(p.x_deg - r->b[0]) > 1e-11 || fabs(p.y_deg - r->b[1]) > 1e-11 || p.time_ns != 7)
+        fail_msg("%s: %.17g, %.17g, R has %.17g, %.17g", r->name, p.x_deg, p.y_deg, r->b[0], r->b[1]);
+}
+
 static void check_sequence(const struct row *r)
 {
     struct stat_main_sequence m = stat_main_sequence(r->a, r->b, r->a_count, 0.95);
@@ -85,7 +93,8 @@ static void check_events(const struct row *r, enum gaze_method method)
                                     .min_fixation_ms = r->d[2],
                                     .min_saccade_ms = r->d[3],
                                     .merge_ms = r->d[4],
-                                    .merge_deg = r->d[5]};
+                                    .merge_deg = r->d[5],
+                                    .peak_ms = r->d[6]};
     else
         rules = (struct gaze_rules){.method = method, .dispersion_deg = r->d[0], .min_fixation_ms = r->d[1]};
     for (size_t i = 0; i < r->a_count; i++)
@@ -131,13 +140,15 @@ static void agrees_with_r(void **state)
             check_spread(&r);
         else if (strcmp(r.what, "angle") == 0)
             check_angle(&r);
+        else if (strcmp(r.what, "eye") == 0)
+            check_eye(&r);
         else if (strcmp(r.what, "sequence") == 0)
             check_sequence(&r);
         else
             check_events(&r, strcmp(r.what, "ivt") == 0 ? GAZE_IVT : GAZE_IDT);
     }
     fclose(file);
-    assert_int_equal(seen, 86);
+    assert_int_equal(seen, 103);
 }
 
 // --- a track, by law ---

@@ -102,6 +102,29 @@ static void missing_samples(void **state)
     program_free(&r);
 }
 
+// One person, sittings at 250 Hz and at 62.5 Hz (every fourth sample is left): 10 of 8000 samples are missing
+// in the first and 3 of 2000 in the second; at the first's rate three quarters of the second would be.
+static void missing_samples_of_two_rates(void **state)
+{
+    (void)state;
+    make("2", "4", "0");
+    study_file_sql(FILE_PATH, "UPDATE session SET participant_id = 1; DELETE FROM participant WHERE id = 2;"
+                              "DELETE FROM gaze WHERE session_id = 2 AND id % 4 <> 3;"
+                              "DELETE FROM gaze WHERE session_id = 1 AND id BETWEEN 500 AND 509;"
+                              "DELETE FROM gaze WHERE session_id = 2 AND id BETWEEN 11000 AND 11011;");
+    struct program_result r = fovstats("--simulated", "--json", NULL);
+    assert_int_equal(r.code, 0);
+    const char *people = strstr(r.out, "\"people\":"), *sessions = strstr(r.out, "\"by_session\":");
+    assert_true(people && sessions);
+    assert_int_equal(json_value(people, "samples", 1), 8000 - 10 + 2000 - 3);
+    close_to(json_value(people, "samples_missing", 1), 10 + 3, 0);
+    close_to(json_value(sessions, "rate_hz", 1), 250, 1e-6);
+    close_to(json_value(sessions, "samples_missing", 1), 10, 0);
+    close_to(json_value(sessions, "rate_hz", 2), 62.5, 1e-6);
+    close_to(json_value(sessions, "samples_missing", 2), 3, 0);
+    program_free(&r);
+}
+
 // The file's clock goes back, stands still, and holds what no tracker sends; an attempt is begun anew.
 static void hostile_file(void **state)
 {
@@ -222,9 +245,13 @@ static void cost_is_linear(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(known_study),  cmocka_unit_test(missing_samples),
-        cmocka_unit_test(hostile_file), cmocka_unit_test(events_are_listed),
-        cmocka_unit_test(wrong_usage),  cmocka_unit_test(cost_is_linear),
+        cmocka_unit_test(known_study),
+        cmocka_unit_test(missing_samples),
+        cmocka_unit_test(missing_samples_of_two_rates),
+        cmocka_unit_test(hostile_file),
+        cmocka_unit_test(events_are_listed),
+        cmocka_unit_test(wrong_usage),
+        cmocka_unit_test(cost_is_linear),
     };
     int code = cmocka_run_group_tests(tests, NULL, NULL);
     unlink(FILE_PATH);

@@ -1,8 +1,8 @@
 // fovstats merge: what is joined, what is counted once, what is refused, and that nothing else is changed.
 #include "program.h"
+#include "said.h"
 #include "study_file.h"
 
-#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -63,13 +63,6 @@ static void expect_fails(struct program_result r, int code, const char *part, co
     program_free(&r);
 }
 
-static void expect_done(struct program_result r, const char *out)
-{
-    if (r.code != 0 || !strstr(r.out, out))
-        fail_msg("exit %d: %s%s", r.code, r.out, r.err);
-    program_free(&r);
-}
-
 static char *choices(const char *a, const char *b)
 {
     struct program_result r = RUN(fovstats, "choices", "--json", a, b);
@@ -77,33 +70,6 @@ static char *choices(const char *a, const char *b)
         fail_msg("%s", r.err);
     free(r.err);
     return r.out;
-}
-
-// After the data's hash, which is of the people's codes too: a laboratory's name before them is another one.
-static const char *numbers(const char *json)
-{
-    const char *at = strstr(json, "\"program\":");
-    assert_non_null(at);
-    return at;
-}
-
-// Equal but for the last digits of numbers: sums go over sessions in the file's order.
-static void expect_same_numbers(const char *a, const char *b)
-{
-    while (*a && *b) {
-        char *end_a, *end_b;
-        double x = strtod(a, &end_a), y = strtod(b, &end_b);
-        if (end_a == a || end_b == b) {
-            if (*a++ != *b++)
-                fail_msg("%.80s\n%.80s", a - 1, b - 1);
-            continue;
-        }
-        if (!(fabs(x - y) <= 1e-12 * fabs(x)) && x != y)
-            fail_msg("%.80s\n%.80s", a, b);
-        a = end_a;
-        b = end_b;
-    }
-    assert_int_equal(*a, *b);
 }
 
 // The second laboratory: the same protocol and codes, other people on other days.
@@ -121,7 +87,7 @@ static void laboratories_are_joined(void **state)
     copy("a.db", "a0.db");
     copy("b.db", "b0.db");
     expect_fails(MERGE("a.db", "b.db", "-o", "m.db"), 1, "participant P01 is also in another file", "m.db");
-    expect_done(MERGE("a.db", "--lab", "Ulm=b.db", "-o", "m.db"), "44 participants, 44 sessions; 0 were");
+    said_done(MERGE("a.db", "--lab", "Ulm=b.db", "-o", "m.db"), "44 participants, 44 sessions; 0 were");
     expect_same("a.db", "a0.db");
     expect_same("b.db", "b0.db");
     assert_string_equal(ask("m.db", "SELECT integrity_check FROM pragma_integrity_check"), "ok");
@@ -135,7 +101,7 @@ static void laboratories_are_joined(void **state)
     assert_string_equal(ask("m.db", "SELECT count(*) FROM sqlite_schema WHERE type = 'trigger'"), "2");
     assert_string_equal(ask("m.db", "SELECT count(*) FROM exclusion"), "2");
     char *together = choices("a.db", "b.db"), *merged = choices("m.db", NULL);
-    expect_same_numbers(numbers(merged), numbers(together));
+    said_same(merged, together);
     free(together);
     free(merged);
 }
@@ -158,11 +124,11 @@ static void copies_are_counted_once(void **state)
     free(once);
     // What a merge made may be merged again, also under a laboratory's name.
     unlink("n.db");
-    expect_done(MERGE("--lab", "Ulm=m.db", "a.db", "-o", "n.db"), "22 participants, 22 sessions; 22 were");
+    said_done(MERGE("--lab", "Ulm=m.db", "a.db", "-o", "n.db"), "22 participants, 22 sessions; 22 were");
     unlink("o.db");
-    expect_done(MERGE("n.db", "m.db", "a.db", "-o", "o.db"), "22 participants, 22 sessions; 44 were");
+    said_done(MERGE("n.db", "m.db", "a.db", "-o", "o.db"), "22 participants, 22 sessions; 44 were");
     char *first = choices("a.db", NULL), *merged = choices("o.db", NULL);
-    expect_same_numbers(numbers(merged), numbers(first));
+    said_same(merged, first);
     free(first);
     free(merged);
 }
@@ -179,17 +145,17 @@ static void the_later_copy_holds(void **state)
     const char *const orders[][2] = {{"a.db", "later.db"}, {"later.db", "a.db"}};
     for (int i = 0; i < 2; i++) {
         unlink("m.db");
-        expect_done(MERGE(orders[i][0], orders[i][1], "-o", "m.db"), "22 participants, 22 sessions; 22 were");
+        said_done(MERGE(orders[i][0], orders[i][1], "-o", "m.db"), "22 participants, 22 sessions; 22 were");
         assert_string_equal(ask("m.db", "SELECT count(*) || ' ' || sum(status = 'running') FROM session"),
                             "22 0");
         char *later = choices("later.db", NULL), *merged = choices("m.db", NULL);
-        expect_same_numbers(numbers(merged), numbers(later));
+        said_same(merged, later);
         free(later);
         free(merged);
     }
     // A file that lacks people, and one that has more: an unfinished session stays as it is.
     unlink("m.db");
-    expect_done(MERGE("a.db", "-o", "m.db"), "22 sessions; 0 were");
+    said_done(MERGE("a.db", "-o", "m.db"), "22 sessions; 0 were");
     assert_string_equal(ask("m.db", "SELECT status FROM session WHERE id = 5"), "running");
     unlink("m.db");
     study_file_sql("later.db", "UPDATE choice SET chosen = iif(chosen = 'a', 'b', 'a') WHERE trial_id = 51");
@@ -206,7 +172,7 @@ static void what_does_not_belong_is_refused(void **state)
     study_file_sql("b.db", "UPDATE protocol SET name = 'other', sha256 = printf('%064d', 2)");
     expect_fails(MERGE("a.db", "--lab", "Ulm=b.db", "-o", "m.db"), 1,
                  "b.db: its sessions are of protocol other", "m.db");
-    expect_done(MERGE("a.db", "--lab", "Ulm=b.db", "--new-protocol", "-o", "m.db"), "44 sessions");
+    said_done(MERGE("a.db", "--lab", "Ulm=b.db", "--new-protocol", "-o", "m.db"), "44 sessions");
     copy("m.db", "kept.db");
     struct program_result r = MERGE("a.db", "-o", "m.db");
     assert_int_equal(r.code, 1);
@@ -236,7 +202,7 @@ static void erased_people_stay_erased(void **state)
     expect_fails(MERGE("a.db", "old.db", "-o", "m.db"), 1, "number 3 was erased", "m.db");
     expect_fails(MERGE("old.db", "a.db", "-o", "m.db"), 1, "number 3 was erased", "m.db");
     copy("a.db", "c.db");
-    expect_done(MERGE("a.db", "c.db", "-o", "m.db"), "22 participants, 21 sessions; 21 were");
+    said_done(MERGE("a.db", "c.db", "-o", "m.db"), "22 participants, 21 sessions; 21 were");
 }
 
 static void bad_files_have_a_sentence(void **state)
@@ -246,7 +212,7 @@ static void bad_files_have_a_sentence(void **state)
     unlink("m.db");
     expect_fails(MERGE("a.db", "nowhere.db", "-o", "m.db"), 1, "nowhere.db: there is no such file", "m.db");
     study_file_sql("b.db", "PRAGMA user_version = 0"); // what a store of the version before would have written
-    expect_fails(MERGE("a.db", "b.db", "-o", "m.db"), 1, "b.db: is of an older version (0, now 1)", "m.db");
+    expect_fails(MERGE("a.db", "b.db", "-o", "m.db"), 1, "b.db: is of an older version (0, now 2)", "m.db");
     study_file_sql("b.db", "PRAGMA user_version = 99");
     expect_fails(MERGE("a.db", "b.db", "-o", "m.db"), 1, "b.db: was written by a newer program", "m.db");
     // Half of a copy that was interrupted.
@@ -261,7 +227,7 @@ static void bad_files_have_a_sentence(void **state)
     assert_int_equal(r.code, 1);
     program_free(&r);
     study_file_make("empty.db", &(struct study_desc){.empty = true});
-    expect_done(MERGE("empty.db", "a.db", "-o", "m.db"), "22 participants, 22 sessions");
+    said_done(MERGE("empty.db", "a.db", "-o", "m.db"), "22 participants, 22 sessions");
 }
 
 int main(void)

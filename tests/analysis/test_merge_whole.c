@@ -1,9 +1,9 @@
 // fovstats merge, seen as a whole: killed at any moment it leaves no half file, and the report of what it
 // joined is the report of the files given together.
 #include "program.h"
+#include "said.h"
 #include "study_file.h"
 
-#include <math.h>
 #include <setjmp.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -23,27 +23,6 @@
 static const char fovstats[] = BUILD_DIR "/bin/fovstats";
 
 #define RUN(...) program_run((const char *const[]){__VA_ARGS__, NULL}, NULL)
-
-static int enter_folder(void **state)
-{
-    static char folder[] = "/tmp/fovstats-test-XXXXXX";
-    *state = mkdtemp(folder);
-    return *state && chdir(folder) == 0 ? 0 : -1;
-}
-
-static int leave_folder(void **state)
-{
-    struct program_result r = RUN("/bin/rm", "-rf", *state);
-    program_free(&r);
-    return 0;
-}
-
-static void expect_done(struct program_result r, const char *out)
-{
-    if (r.code != 0 || !strstr(r.out, out))
-        fail_msg("exit %d: %s%s", r.code, r.out, r.err);
-    program_free(&r);
-}
 
 static int64_t now_ns(void)
 {
@@ -89,12 +68,12 @@ static bool kill_after(int64_t ns)
 static void a_killed_merge_leaves_nothing_half(void **state)
 {
     (void)state;
-    expect_done(RUN(BUILD_DIR "/tests/gaze_study", "g.db", "12", "4", "3", "120", "0"), "");
-    expect_done(RUN(BUILD_DIR "/tests/gaze_study", "h.db", "12", "4", "3", "120", "0"), "");
+    said_done(RUN(BUILD_DIR "/tests/gaze_study", "g.db", "12", "4", "3", "120", "0"), "");
+    said_done(RUN(BUILD_DIR "/tests/gaze_study", "h.db", "12", "4", "3", "120", "0"), "");
     study_file_sql("h.db", "UPDATE participant SET code = 'H' || code");
     study_file_sql("h.db", "UPDATE session SET started_at = replace(started_at, '2026-', '2025-')");
     int64_t begin = now_ns();
-    expect_done(RUN(fovstats, "merge", "g.db", "h.db", "-o", "m.db"), "24 participants, 24 sessions");
+    said_done(RUN(fovstats, "merge", "g.db", "h.db", "-o", "m.db"), "24 participants, 24 sessions");
     int64_t whole = now_ns() - begin;
     expect_whole("m.db");
     uint64_t random = 20261125; // seed
@@ -108,7 +87,7 @@ static void a_killed_merge_leaves_nothing_half(void **state)
     }
     assert_true(killed >= 10);
     unlink("m.db");
-    expect_done(RUN(fovstats, "merge", "g.db", "h.db", "-o", "m.db"), "24 participants, 24 sessions");
+    said_done(RUN(fovstats, "merge", "g.db", "h.db", "-o", "m.db"), "24 participants, 24 sessions");
     expect_whole("m.db"); // what was left of the killed ones is in nobody's way
     assert_int_not_equal(access("m.db.part", F_OK), 0);
 }
@@ -130,25 +109,6 @@ static char *report(const char *out, const char *a, const char *b)
     return r.out;
 }
 
-// Equal but for the last digits of numbers: sums go over sessions in the file's order.
-static void expect_same_numbers(const char *a, const char *b)
-{
-    while (*a && *b) {
-        char *end_a, *end_b;
-        double x = strtod(a, &end_a), y = strtod(b, &end_b);
-        if (end_a == a || end_b == b) {
-            if (*a++ != *b++)
-                fail_msg("%.80s\n%.80s", a - 1, b - 1);
-            continue;
-        }
-        if (!(fabs(x - y) <= 1e-12 * fabs(x)) && x != y && !(isnan(x) && isnan(y)))
-            fail_msg("%.80s\n%.80s", a, b);
-        a = end_a;
-        b = end_b;
-    }
-    assert_int_equal(*a, *b);
-}
-
 static void the_report_is_that_of_the_files_together(void **state)
 {
     (void)state;
@@ -156,10 +116,10 @@ static void the_report_is_that_of_the_files_together(void **state)
     study_file_make("b.db", &(struct study_desc){.several = true});
     study_file_sql("b.db", "UPDATE session SET started_at = replace(started_at, '2026-02', '2026-03')");
     study_file_sql("b.db", "UPDATE participant SET code = 'Q' || code");
-    expect_done(RUN(fovstats, "merge", "a.db", "b.db", "-o", "j.db"), "44 participants, 44 sessions");
+    said_done(RUN(fovstats, "merge", "a.db", "b.db", "-o", "j.db"), "44 participants, 44 sessions");
     char *together = report("t.html", "a.db", "b.db"), *joined = report("j.html", "j.db", NULL);
     assert_true(strlen(joined) > 20000);
-    expect_same_numbers(joined, together);
+    said_same(joined, together);
     free(together);
     free(joined);
 }
@@ -167,11 +127,11 @@ static void the_report_is_that_of_the_files_together(void **state)
 static void one_is_one(void **state)
 {
     (void)state;
-    expect_done(RUN(BUILD_DIR "/tests/gaze_study", "o.db", "1", "1", "1", "60", "0"), "");
-    expect_done(RUN("/bin/cp", "o.db", "p.db"), "");
-    expect_done(RUN(fovstats, "merge", "o.db", "p.db", "-o", "q.db"),
-                "2 files, 1 participant, 1 session; 1 was in several files and is counted once.\n");
-    expect_done(RUN(fovstats, "merge", "o.db", "-o", "r.db"), "1 file, 1 participant, 1 session; 0 were");
+    said_done(RUN(BUILD_DIR "/tests/gaze_study", "o.db", "1", "1", "1", "60", "0"), "");
+    said_done(RUN("/bin/cp", "o.db", "p.db"), "");
+    said_done(RUN(fovstats, "merge", "o.db", "p.db", "-o", "q.db"),
+              "2 files, 1 participant, 1 session; 1 was in several files and is counted once.\n");
+    said_done(RUN(fovstats, "merge", "o.db", "-o", "r.db"), "1 file, 1 participant, 1 session; 0 were");
 }
 
 int main(void)
@@ -181,5 +141,5 @@ int main(void)
         cmocka_unit_test(the_report_is_that_of_the_files_together),
         cmocka_unit_test(one_is_one),
     };
-    return cmocka_run_group_tests_name("merge_whole", tests, enter_folder, leave_folder);
+    return cmocka_run_group_tests_name("merge_whole", tests, program_enter_folder, program_leave_folder);
 }

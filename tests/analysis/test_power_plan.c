@@ -4,6 +4,7 @@
 #include "analysis/stats/power_anova.h"
 #include "analysis/stats/power_equivalence.h"
 #include "analysis/stats/power_simulation.h"
+#include "power_row.h"
 #include "program.h"
 #include "reference.h"
 #include "said.h"
@@ -25,28 +26,32 @@ static const char fovstats[] = BUILD_DIR "/bin/fovstats";
 
 enum { STUDIES = 20000 };
 
-struct row {
-    const char *what;
-    int64_t n, cells, df;
-    double x, sd, margin, alpha, power, value, error;
-};
-
 // What the command says of the people needed.
-static double people_needed(const struct row *row)
+static double people_needed(const struct power_row *row)
 {
-    char d[32], power[32];
-    snprintf(d, sizeof d, "%.17g", row->x);
+    char x[32], power[32];
+    snprintf(x, sizeof x, "%.17g", row->x);
     snprintf(power, sizeof power, "%.17g", row->power);
-    struct program_result r = row->what[0] == 'p'
-                                  ? FOVSTATS("power", "--d", d, "--power", power, "--json")
-                                  : FOVSTATS("power", "--d", d, "--unpaired", "--power", power, "--json");
+    bool two = row->cells == 6; // an effect of a design of six cells, else of 24
+    const char *cell = row->cells == 0       ? ""
+                       : two && row->df == 2 ? "A (3)"
+                       : two                 ? "B (2)"
+                       : row->df == 6        ? "B (4) x C (3)"
+                                             : "A (2)";
+    struct program_result r =
+        row->cells != 0
+            ? FOVSTATS("power", "--levels", two ? "3x2" : "2x4x3", "--f", x, "--power", power, "--json")
+        : row->what[0] == 'p' ? FOVSTATS("power", "--d", x, "--power", power, "--json")
+                              : FOVSTATS("power", "--d", x, "--unpaired", "--power", power, "--json");
     assert_int_equal(r.code, 0);
-    double people = said_after(r.out, "cells", "people_first");
+    char after[64];
+    snprintf(after, sizeof after, "\"cell\":\"%s\"", cell);
+    double people = said_after(r.out, after, "people_first");
     program_free(&r);
     return people;
 }
 
-static double simulated(const struct row *row)
+static double simulated(const struct power_row *row)
 {
     const struct stat_simulation s = {.choices = &row->cells,
                                       .choices_count = 1,
@@ -60,7 +65,7 @@ static double simulated(const struct row *row)
     return stat_simulate_power(&s).power;
 }
 
-static double compute(const struct row *row)
+static double compute(const struct power_row *row)
 {
     if (strcmp(row->what, "equivalence") == 0)
         return stat_binomial_equivalence_power(row->n, row->margin, row->x, row->alpha);
@@ -72,13 +77,13 @@ static double compute(const struct row *row)
             .stays;
     if (strcmp(row->what, "equivalence_many") == 0)
         return simulated(row);
-    if (strncmp(row->what, "anova", 5) == 0)
+    if (strcmp(row->what, "anova") == 0 || strcmp(row->what, "anova_aov") == 0)
         return stat_anova_within_power(row->n, row->cells, row->df, row->x, row->alpha);
     return people_needed(row);
 }
 
 // Both simulate, or R alone: 4 standard errors are passed once in 16,000 honest comparisons.
-static double allowed(const struct row *row)
+static double allowed(const struct power_row *row)
 {
     if (row->error == 0)
         return 1e-11;
@@ -89,24 +94,18 @@ static double allowed(const struct row *row)
 static void agrees_with_r(void **state)
 {
     (void)state;
-    char line[512];
+    struct power_row row;
     size_t rows = 0, simulations = 0;
     double worst = 0;
-    FILE *file = reference_open("power_plan.csv");
-    assert_non_null(fgets(line, sizeof line, file));
-    for (; fgets(line, sizeof line, file); rows++) {
-        line[strcspn(line, "\n")] = '\0';
-        char *rest = line;
-        struct row row = {.what = reference_field(&rest, ',')};
-        double v[10];
-        for (int i = 0; i < 10; i++)
-            v[i] = reference_number(reference_field(&rest, ','));
-        row = (struct row){row.what, (int64_t)v[0], (int64_t)v[1], (int64_t)v[2], v[3], v[4],
-                           v[5],     v[6],          v[7],          v[8],          v[9]};
+    FILE *file = power_rows_open();
+    while (power_row_next(file, &row)) {
+        if (strncmp(row.what, "none", 4) == 0)
+            continue; // of a rehearsal: test_power_rehearsal.c
         double mine = compute(&row), off = fabs(mine - row.value);
         if (!(off <= allowed(&row)))
-            fail_msg("%s of %.0f, %.0f cells, %g: %.15g, R %.15g", row.what, v[0], v[1], row.x, mine,
-                     row.value);
+            fail_msg("%s of %d, %d cells, %g: %.15g, R %.15g", row.what, (int)row.n, (int)row.cells, row.x,
+                     mine, row.value);
+        rows++;
         simulations += row.error > 0;
         worst = row.error > 0 ? worst : fmax(worst, off);
     }
@@ -156,11 +155,10 @@ static void command_plans(void **state)
         FOVSTATS("power", "--levels", "3x2", "--f", "0.25", "--participants", "22", "--json");
     assert_int_equal(r.code, 0);
     assert_non_null(strstr(r.out, "\"cell\":\"A (3) x B (2)\""));
-    // R: tests/reference/power_plan.csv has 22 people, 6 cells, 2 degrees of freedom
-    assert_true(fabs(said_after(r.out, "A (3)", "power") - stat_anova_within_power(22, 6, 2, 0.25, 0.05)) <
-                1e-15);
-    assert_true(fabs(said_after(r.out, "\"B (2)", "power") - stat_anova_within_power(22, 6, 1, 0.25, 0.05)) <
-                1e-15);
+    const double nan = (double)NAN, a = power_row_value("anova", 22, 6, 2, 0.25, 0.05, nan),
+                 b = power_row_value("anova", 22, 6, 1, 0.25, 0.05, nan);
+    assert_true(fabs(said_after(r.out, "A (3)", "power") - a) < 1e-11);
+    assert_true(fabs(said_after(r.out, "\"B (2)", "power") - b) < 1e-11);
     program_free(&r);
     r = FOVSTATS("power", "--margin", "0.2", "--participants", "40");
     assert_int_equal(r.code, 0);
@@ -180,32 +178,51 @@ static void command_plans(void **state)
 static void wrong_use(void **state)
 {
     (void)state;
-    said_sentence(FOVSTATS("power", "--people", "5"), 2, "--people is not an option");
-    said_sentence(FOVSTATS("power", "--share", "0"), 2, "--share is 0 but must lie between 0 and 1");
-    said_sentence(FOVSTATS("power", "--share", "0.7", "--participants", "0"), 2, "--participants is \"0\"");
-    said_sentence(FOVSTATS("power", "--d", "0.5", "--participants", "1"), 2, "a number from 2");
-    said_sentence(FOVSTATS("power", "--d", "0.5", "--unpaired", "--participants", "3"), 2, "a number from 4");
-    said_sentence(FOVSTATS("power", "--d", "0"), 2, "must not be 0");
-    said_sentence(FOVSTATS("power", "--d", "11"), 2, "nor beyond 10");
-    said_sentence(FOVSTATS("power", "--difference", "1"), 2, "needs --sd S beside --difference");
-    said_sentence(FOVSTATS("power", "--difference", "1", "--sd", "0"), 2, "--sd is 0 but must be above 0");
-    said_sentence(FOVSTATS("power", "--difference", "1", "--sd", "-2"), 2, "--sd is -2 but must be above 0");
-    said_sentence(FOVSTATS("power", "--d", "1", "--sd", "2"), 2, "--sd goes with");
-    said_sentence(FOVSTATS("power", "--d", "1", "--share", "0.7"), 2, "are of choices");
-    said_sentence(FOVSTATS("power", "--d", "1", "--margin", "0.1"), 2, "are of choices");
-    said_sentence(FOVSTATS("power", "--unpaired", "--share", "0.7"), 2, "--unpaired goes with");
-    said_sentence(FOVSTATS("power", "x.db", "--d", "1"), 2, "takes no study file for ratings");
-    said_sentence(FOVSTATS("power", "--margin", "0.6"), 2, "--margin is 0.6");
-    said_sentence(FOVSTATS("power", "--margin", "0"), 2, "--margin is 0");
-    said_sentence(FOVSTATS("power", "--margin", "0.1", "--alpha", "0.6"), 2, "--alpha is 0.6");
-    said_sentence(FOVSTATS("power", "--levels", "3"), 2, "needs --f F");
-    said_sentence(FOVSTATS("power", "--f", "0.2"), 2, "needs --levels");
+    static const struct said_case cases[] = {
+        {{"power"}, "needs --share P"},
+        {{"power", "--people", "5"}, "--people is not an option"},
+        {{"power", "--share", "0"}, "--share is 0 but must lie between 0 and 1"},
+        {{"power", "--share", "1"}, "--share is 1 but must lie between 0 and 1"},
+        {{"power", "--share", "nan"}, "--share is \"nan\" but must be a number"},
+        {{"power", "--share", "0.7", "--choices", "4"}, "needs --participants"},
+        {{"power", "--share", "0.7", "--participants", "0"}, "--participants is \"0\""},
+        {{"power", "--share", "0.7", "--participants", "9..3"}, "--participants is \"9..3\""},
+        {{"power", "--share", "0.7", "--participants", "1..900"}, "--participants is \"1..900\""},
+        {{"power", "--share", "0.7", "--sd", "-1"}, "--sd is -1 but must be from 0 to 10"},
+        {{"power", "--share", "0.7", "--studies", "5"}, "--studies is 5"},
+        {{"power", "--share", "0.7", "--alpha", "0"}, "--alpha is 0"},
+        {{"power", "--d", "0.5", "--participants", "1"}, "a number from 2"},
+        {{"power", "--d", "0.5", "--unpaired", "--participants", "3"}, "a number from 4"},
+        {{"power", "--d", "0"}, "must not be 0"},
+        {{"power", "--d", "11"}, "nor beyond 10"},
+        {{"power", "--difference", "1"}, "needs --sd S beside --difference"},
+        {{"power", "--difference", "1", "--sd", "0"}, "--sd is 0 but must be above 0"},
+        {{"power", "--difference", "1", "--sd", "-2"}, "--sd is -2 but must be above 0"},
+        {{"power", "--d", "1", "--sd", "2"}, "--sd goes with"},
+        {{"power", "--d", "1", "--share", "0.7"}, "are of choices"},
+        {{"power", "--d", "1", "--margin", "0.1"}, "are of choices"},
+        {{"power", "--d", "1", "--f", "0.2"}, "not both"},
+        {{"power", "--d", "1", "--levels", "3"}, "not both"},
+        {{"power", "--f", "0.2", "--share", "0.7"}, "are of choices"},
+        {{"power", "--unpaired", "--share", "0.7"}, "--unpaired goes with"},
+        {{"power", "x.db", "--d", "1"}, "takes no study file for a difference of ratings"},
+        {{"power", "x.db", "--share", "0.7", "--choices", "4", "--participants", "9"},
+         "takes --choices or a study file"},
+        {{"power", "--margin", "0.6"}, "--margin is 0.6"},
+        {{"power", "--margin", "0"}, "--margin is 0"},
+        {{"power", "--margin", "0.1", "--alpha", "0.6"}, "--alpha is 0.6"},
+        {{"power", "--levels", "3"}, "needs --f F"},
+        {{"power", "x.db", "--levels", "3"}, "needs --f F"},
+        {{"power", "--f", "0.2"}, "needs --levels"},
+        {{"power", "--levels", "3", "--f", "-0.2"}, "--f is -0.2"},
+        {{"power", "--levels", "3", "--f", "6"}, "F^2 times the cells 100 at most"},
+        {{"power", "x.db", "--f", "0"}, "--f is 0"},
+        {{"power", "--levels", "3", "--f", "0.2", "--participants", "1..9"}, "--participants"},
+    };
+    said_wrong_use(cases, sizeof cases / sizeof cases[0]);
     const char *const levels[] = {"", "x", "1", "3x", "3xx2", "x3", "3x2x2x2x2x2x2", "9x9x9x9x9", "3.5"};
     for (size_t i = 0; i < sizeof levels / sizeof levels[0]; i++)
         said_sentence(FOVSTATS("power", "--levels", levels[i], "--f", "0.2"), 2, "--levels is \"");
-    said_sentence(FOVSTATS("power", "--levels", "3", "--f", "-0.2"), 2, "--f is -0.2");
-    said_sentence(FOVSTATS("power", "--levels", "3", "--f", "0.2", "--participants", "1..9"), 2,
-                  "--participants");
 }
 
 int main(void)

@@ -4,7 +4,6 @@
 #include "program.h"
 #include "reference.h"
 #include "said.h"
-#include "study_file.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -99,57 +98,12 @@ static void command_plans(void **state)
     program_free(&again);
 }
 
-// Cells with the choices that people have in a rehearsal: nine in the one, one in the other.
-static void command_takes_a_rehearsal(void **state)
-{
-    (void)state;
-    study_file_make("r.db", &(struct study_desc){.several = true, .simulated = true});
-    struct program_result r = FOVSTATS("power", "r.db", "--simulated", "--share", "0.75", "--participants",
-                                       "22", "--sd", "0.5", "--json");
-    assert_int_equal(r.code, 0);
-    double several = said_after(r.out, "epsilon 0.2\"", "power"),
-           one = said_after(r.out, "epsilon 0.05 (of the participants who get this cell: 19 of 22)\"", "power");
-    assert_true(several > 0.99 && fabs(one - 0.516797834436943) < 1e-12);
-    assert_non_null(strstr(r.out, "\"data_sha256\":\""));
-    program_free(&r);
-}
-
-static void wrong_use(void **state)
-{
-    (void)state;
-    const struct {
-        const char *argv[8];
-        int code;
-        const char *says;
-    } cases[] = {
-        {{fovstats, "power"}, 2, "needs --share P"},
-        {{fovstats, "power", "--share", "1"}, 2, "--share is 1 but must lie between 0 and 1"},
-        {{fovstats, "power", "--share", "nan"}, 2, "--share is \"nan\" but must be a number"},
-        {{fovstats, "power", "--share", "0.7", "--choices", "4"}, 2, "needs --participants"},
-        {{fovstats, "power", "--share", "0.7", "--participants", "9..3"}, 2, "--participants is \"9..3\""},
-        {{fovstats, "power", "--share", "0.7", "--participants", "1..900"}, 2, "--participants is \"1..900\""},
-        {{fovstats, "power", "--share", "0.7", "--sd", "-1"}, 2, "--sd is -1 but must be from 0 to 10"},
-        {{fovstats, "power", "--share", "0.7", "--studies", "5"}, 2, "--studies is 5"},
-        {{fovstats, "power", "--share", "0.7", "--alpha", "0"}, 2, "--alpha is 0"},
-        {{fovstats, "power", "none.db", "--share", "0.7", "--participants", "5"},
-         1,
-         "none.db: there is no such file"},
-    };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        struct program_result r = program_run(cases[i].argv, NULL);
-        if (r.code != cases[i].code || !strstr(r.err, cases[i].says) || r.out[0])
-            fail_msg("exit %d, \"%s\"; expected exit %d and \"%s\"", r.code, r.err, cases[i].code,
-                     cases[i].says);
-        program_free(&r);
-    }
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(agrees_with_r), cmocka_unit_test(bad_input),
-        cmocka_unit_test(command_plans), cmocka_unit_test(command_takes_a_rehearsal),
-        cmocka_unit_test(wrong_use),
+        cmocka_unit_test(agrees_with_r),
+        cmocka_unit_test(bad_input),
+        cmocka_unit_test(command_plans),
     };
-    return cmocka_run_group_tests(tests, program_enter_folder, program_leave_folder);
+    return cmocka_run_group_tests(tests, NULL, NULL);
 }

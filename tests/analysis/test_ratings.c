@@ -2,6 +2,7 @@
 // trial against R (tests/reference/ratings.R), and what is said where there is nothing to analyse.
 #include "program.h"
 #include "reference.h"
+#include "said.h"
 #include "study_file.h"
 
 #include <math.h>
@@ -53,23 +54,10 @@ static const char both[] = "CREATE TABLE made AS SELECT i.value AS i, c.value AS
 
 #define FOVSTATS(...) program_run((const char *const[]){fovstats, __VA_ARGS__, NULL}, NULL)
 
-// The number after the first "key": that follows each of the marks in turn.
-static double number_after(const char *json, const char *first, const char *second, const char *key)
-{
-    char quoted[64];
-    snprintf(quoted, sizeof quoted, "\"%s\":", key);
-    const char *at = strstr(json, first);
-    at = at ? strstr(at, second) : NULL;
-    at = at ? strstr(at, quoted) : NULL;
-    if (!at)
-        fail_msg("no %s after %s and %s in %s", key, first, second, json);
-    return strtod(at + strlen(quoted), NULL);
-}
-
 static void expect_number(const char *json, const char *first, const char *second, const char *key,
                           const char *name)
 {
-    double got = number_after(json, first, second, key), want = reference_value("ratings.csv", name);
+    double got = said_after(SAID_PLACE(json, first), second, key), want = reference_value("ratings.csv", name);
     if (!reference_close(got, want, 1e-10))
         fail_msg("%s: %.17g, R %.17g", name, got, want);
 }
@@ -144,7 +132,7 @@ static void factors_agree_with_r(void **state)
             snprintf(name, sizeof name, "%s_%s.%s", pairs[i][0], pairs[i][1], pair_keys[k]);
             expect_number(json, "\"pairs\"", mark, pair_keys[k], name);
         }
-    assert_true(number_after(json, "\"factorial\"", "", "participants") == 7);
+    assert_true(said_after(json, "\"factorial\"", "participants") == 7);
     assert_non_null(strstr(json, "\"incomplete\":[{\"participant\":\"P08\",\"cells_missing\":1}]"));
     assert_non_null(
         strstr(json, "\"factors_left_out\":\"constant (one level only), follows (follows from region)\""));
@@ -172,9 +160,9 @@ static void options_agree_with_r(void **state)
         snprintf(name, sizeof name, "%s.rank_p", cells[i]);
         expect_number(strstr(json, mark), "\"wilcoxon\"", "", "p_value", name);
     }
-    assert_true(number_after(json, "\"cell\":\"test II\"", "", "participants") == 6);
-    assert_true(number_after(json, "\"cell\":\"test II\"", "", "trials") == 7);
-    assert_true(number_after(json, "left_out", "", "one_option_only") == 1);
+    assert_true(said_after(json, "\"cell\":\"test II\"", "participants") == 6);
+    assert_true(said_after(json, "\"cell\":\"test II\"", "trials") == 7);
+    assert_true(said_after(json, "left_out", "one_option_only") == 1);
     free(json);
 }
 
@@ -233,10 +221,7 @@ static void expect_in_report(const char *db, const char *const *parts)
 
 static void expect_in_text(const char *db, const char *part)
 {
-    struct program_result r = FOVSTATS("ratings", db);
-    if (r.code != 0 || !strstr(r.out, part))
-        fail_msg("exit %d, \"%s%s\" lacks \"%s\"", r.code, r.out, r.err, part);
-    program_free(&r);
+    said_done(FOVSTATS("ratings", db), part);
 }
 
 static void the_report_shows_them(void **state)

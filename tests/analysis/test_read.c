@@ -149,6 +149,29 @@ static void a_file_at_rest(void **state)
     store_reader_close(reader);
 }
 
+// Half of a change by another program, whose journal says how the file was before.
+static void a_change_that_was_cut_off(void **state)
+{
+    (void)state;
+    study_file_make("s.db", &(struct study_desc){0});
+    sqlite3 *writer = NULL;
+    assert_int_equal(sqlite3_open("s.db", &writer), SQLITE_OK);
+    assert_int_equal(
+        sqlite3_exec(writer,
+                     "PRAGMA journal_mode = DELETE; PRAGMA cache_size = 1; BEGIN; UPDATE trial SET "
+                     "block = 'x'; UPDATE choice SET chosen = 'equal'; UPDATE frame SET gpu_us = 1",
+                     NULL, NULL, NULL),
+        SQLITE_OK);
+    assert_int_equal(system("cp s.db t.db && cp s.db-journal t.db-journal"), 0); // as after a power cut
+    char error[512] = "";
+    assert_null(store_reader_open("t.db", error, sizeof error));
+    assert_non_null(strstr(error, "t.db: another program was stopped while it wrote"));
+    assert_int_equal(sqlite3_exec(writer, "ROLLBACK", NULL, NULL, NULL), SQLITE_OK);
+    sqlite3_close(writer);
+    unlink("t.db");
+    unlink("t.db-journal");
+}
+
 static void names_that_look_like_addresses(void **state)
 {
     (void)state;
@@ -221,6 +244,7 @@ int main(void)
         cmocka_unit_test(unknown_stays_unknown),
         cmocka_unit_test(a_file_in_use),
         cmocka_unit_test(a_file_at_rest),
+        cmocka_unit_test(a_change_that_was_cut_off),
         cmocka_unit_test(names_that_look_like_addresses),
         cmocka_unit_test(staircases_and_adjustments),
     };

@@ -149,6 +149,7 @@ static void a_study_of_people(void **state)
         "answers to trials that are not done: 3",
         "Of 2 cells, 1 lies outside",
         "<h2>Definitions</h2>",
+        "left no count of frames (a crash, or it still runs). What was shown",
     };
     for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++)
         if (!strstr(page, parts[i]))
@@ -241,6 +242,20 @@ static void a_planned_margin_is_tested(void **state)
     assert_int_equal(count(page, "Equivalence: is the share of choices within 30 to 70&nbsp;%"), 1);
     assert_int_equal(count(page, "<td class=\"word\">exact binomial</td>"), 2);
     assert_null(strstr(page, "equality within the margin is shown"));
+    free(page);
+    study_file_even("s.db"); // p 0.0387 in a cell, which is not enough in two
+    r = program_run(argv, NULL);
+    assert_int_equal(r.code, 0);
+    program_free(&r);
+    page = slurp("r.html");
+    assert_null(strstr(page, "equality within the margin is shown"));
+    assert_null(strstr(page, "equality is shown"));
+    // In the planned table a cell's difference and equality count once; the section on choices has equality
+    // alone.
+    assert_int_equal(count(page, "<td>0.0387</td><td>0.0775</td>"), 2);
+    assert_int_equal(count(page, "neither equality nor a difference is shown"), 2);
+    assert_int_equal(count(page, "The 4 planned tests are one family, with Holm\u2019s adjustment."), 1);
+    assert_int_equal(count(page, "equality is claimed only where Holm\u2019s p is at most 0.05"), 1);
     free(page);
 }
 

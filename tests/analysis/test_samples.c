@@ -4,6 +4,7 @@
 #include "analysis/stats/ttest.h"
 #include "reference.h"
 
+#include <float.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -111,6 +112,26 @@ static void large_offset(void **state)
     assert_true(reference_close(b.mean - 1e9, a.mean, 1e-4));
 }
 
+// 0.225 as participants reach it by adding and taking steps of 0.05. Numbers that do differ keep their spread,
+// however large they are.
+static void rounding_is_no_spread(void **state)
+{
+    (void)state;
+    double steps[] = {0.225, 0.225 + 0.05 - 0.05, 0.225 + 0.05 * 3 - 0.05 - 0.05 - 0.05, 0.425 - 0.05 * 4};
+    assert_true(steps[0] != steps[2] || steps[0] != steps[3]);
+    struct stat_moments m = stat_moments(steps, 4);
+    assert_true(m.sd == 0 && m.std_error == 0 && fabs(m.mean - 0.225) < 1e-15);
+    for (int i = 0; i < 4; i++)
+        steps[i] *= -1e9;
+    assert_true(stat_moments(steps, 4).sd == 0);
+    struct stat_ttest t = stat_ttest_one_sample(steps, 4, NULL);
+    assert_true(isnan(t.p_value) && isnan(t.ci_low));
+    const double close[] = {1, 1 + 16 * DBL_EPSILON}, far[] = {1e9, 1e9 + 0.0009765625}, around[] = {0, 1e-30};
+    assert_true(reference_close(stat_moments(close, 2).sd, 16 * DBL_EPSILON / sqrt(2), 1e-14));
+    assert_true(reference_close(stat_moments(far, 2).sd, 0.0009765625 / sqrt(2), 1e-14));
+    assert_true(reference_close(stat_moments(around, 2).sd, 1e-30 / sqrt(2), 1e-14));
+}
+
 static void bad_input(void **state)
 {
     (void)state;
@@ -139,6 +160,7 @@ static void bad_input(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(agrees_with_r), cmocka_unit_test(known_answers),
-                                       cmocka_unit_test(large_offset), cmocka_unit_test(bad_input)};
+                                       cmocka_unit_test(large_offset), cmocka_unit_test(rounding_is_no_spread),
+                                       cmocka_unit_test(bad_input)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

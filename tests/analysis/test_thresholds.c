@@ -1,6 +1,6 @@
 // fovstats thresholds and jod on files with known answers: numbers against R, text against a golden file.
 #include "program.h"
-#include "reference.h"
+#include "said.h"
 #include "staircase_file.h"
 #include "study_file.h"
 
@@ -20,20 +20,6 @@
 static const char fovstats[] = BUILD_DIR "/bin/fovstats";
 
 #define FOVSTATS(...) program_run((const char *const[]){fovstats, __VA_ARGS__, NULL}, NULL)
-
-// The place after each of the marks in turn, the last a key: its value.
-static const char *after(const char *json, const char *const *marks)
-{
-    for (; *marks; marks++) {
-        const char *at = strstr(json, *marks);
-        if (!at)
-            fail_msg("no %s in %s", *marks, json);
-        json = at + strlen(*marks);
-    }
-    return json;
-}
-
-#define AFTER(json, ...) after(json, (const char *const[]){__VA_ARGS__, NULL})
 
 static void expect(const char *value, double expected, double within)
 {
@@ -55,43 +41,43 @@ static void staircases_and_fits(void **state)
     struct program_result r = FOVSTATS("thresholds", "s.db", "--json");
     if (r.code != 0)
         fail_msg("exit %d: %s", r.code, r.err);
-    const char *cell = AFTER(r.out, "\"block\":\"stairs\"");
-    expect_text(AFTER(cell, "\"parameter\":"), "\"fovea_deg\"");
-    expect_text(AFTER(cell, "\"method\":"), "\"up_down\"");
-    expect_text(AFTER(cell, "\"larger\":"), "\"easier\"");
+    const char *cell = SAID_PLACE(r.out, "\"block\":\"stairs\"");
+    expect_text(SAID_PLACE(cell, "\"parameter\":"), "\"fovea_deg\"");
+    expect_text(SAID_PLACE(cell, "\"method\":"), "\"up_down\"");
+    expect_text(SAID_PLACE(cell, "\"larger\":"), "\"easier\"");
     // R: t.test(c(3.5, 6, 4))
-    const char *mean = AFTER(cell, "\"over_people_staircase\":{");
-    expect(AFTER(mean, "\"n\":"), 3, 0);
-    expect(AFTER(mean, "\"mean\":"), 4.5, 1e-12);
-    expect(AFTER(mean, "\"sd\":"), 1.3228756555322954, 1e-12);
-    expect(AFTER(mean, "\"median\":"), 4, 1e-12);
-    expect(AFTER(mean, "\"ci_low\":"), 1.2137946961357857, 1e-10);
-    expect(AFTER(mean, "\"ci_high\":"), 7.7862053038642136, 1e-10);
+    const char *mean = SAID_PLACE(cell, "\"over_people_staircase\":{");
+    expect(SAID_PLACE(mean, "\"n\":"), 3, 0);
+    expect(SAID_PLACE(mean, "\"mean\":"), 4.5, 1e-12);
+    expect(SAID_PLACE(mean, "\"sd\":"), 1.3228756555322954, 1e-12);
+    expect(SAID_PLACE(mean, "\"median\":"), 4, 1e-12);
+    expect(SAID_PLACE(mean, "\"ci_low\":"), 1.2137946961357857, 1e-10);
+    expect(SAID_PLACE(mean, "\"ci_high\":"), 7.7862053038642136, 1e-10);
     // tests/reference/psychometric.csv, "lapses at the top"
-    const char *first = AFTER(cell, "\"participant\":\"P01\"");
-    expect(AFTER(first, "\"steps\":"), 140, 0);
-    expect(AFTER(first, "\"reversals\":"), 32, 0);
-    expect_text(AFTER(first, "\"estimable\":"), "true");
-    expect(AFTER(first, "\"threshold\":"), 3.1375598260723097, 6e-4);
-    expect(AFTER(first, "\"threshold_profile\":["), 2.2418407666067672, 6e-4);
-    expect(AFTER(first, "\"threshold_profile\":[", ","), 4.1432527555263485, 6e-4);
-    expect(AFTER(first, "\"deviance\":"), 0.69066182612955629, 1e-6);
-    expect(AFTER(first, "\"bootstrap\":{", "\"replicates\":"), 199, 0);
-    const char *second = AFTER(cell, "\"participant\":\"P02\""),
-               *third = AFTER(cell, "\"participant\":\"P03\"");
-    expect_text(AFTER(second, "\"estimable\":"), "false,\"reason\":\"every answer is a yes");
-    expect_text(AFTER(second, "\"threshold\":"), "null");
-    expect_text(AFTER(third, "\"reason\":"), "\"one level only\"");
-    expect_text(AFTER(third, "\"bayes\":{", "\"mean\":"), "null");
-    expect(AFTER(cell, "\"participant\":\"P04\"", "\"steps\":"), 4, 0);
+    const char *first = SAID_PLACE(cell, "\"participant\":\"P01\"");
+    expect(SAID_PLACE(first, "\"steps\":"), 140, 0);
+    expect(SAID_PLACE(first, "\"reversals\":"), 32, 0);
+    expect_text(SAID_PLACE(first, "\"estimable\":"), "true");
+    expect(SAID_PLACE(first, "\"threshold\":"), 3.1375598260723097, 6e-4);
+    expect(SAID_PLACE(first, "\"threshold_profile\":["), 2.2418407666067672, 6e-4);
+    expect(SAID_PLACE(first, "\"threshold_profile\":[", ","), 4.1432527555263485, 6e-4);
+    expect(SAID_PLACE(first, "\"deviance\":"), 0.69066182612955629, 1e-6);
+    expect(SAID_PLACE(first, "\"bootstrap\":{", "\"replicates\":"), 199, 0);
+    const char *second = SAID_PLACE(cell, "\"participant\":\"P02\""),
+               *third = SAID_PLACE(cell, "\"participant\":\"P03\"");
+    expect_text(SAID_PLACE(second, "\"estimable\":"), "false,\"reason\":\"every answer is a yes");
+    expect_text(SAID_PLACE(second, "\"threshold\":"), "null");
+    expect_text(SAID_PLACE(third, "\"reason\":"), "\"one level only\"");
+    expect_text(SAID_PLACE(third, "\"bayes\":{", "\"mean\":"), "null");
+    expect(SAID_PLACE(cell, "\"participant\":\"P04\"", "\"steps\":"), 4, 0);
     assert_null(strstr(r.out, "\"participant\":\"P05\""));
     assert_null(strstr(r.out, "practice"));
-    expect(AFTER(r.out, "\"left_out\":{", "\"excluded\":"), 1, 0);
-    expect(AFTER(r.out, "\"left_out\":{", "\"not_done\":"), 2, 0);
-    const char *graded = AFTER(r.out, "\"block\":\"graded\"");
-    expect_text(AFTER(graded, "\"graded\":"), "true");
-    expect_text(AFTER(graded, "\"reason\":"), "\"no answers\"");
-    expect(AFTER(graded, "\"staircase_estimate\":"), 1.5, 0);
+    expect(SAID_PLACE(r.out, "\"left_out\":{", "\"excluded\":"), 1, 0);
+    expect(SAID_PLACE(r.out, "\"left_out\":{", "\"not_done\":"), 2, 0);
+    const char *graded = SAID_PLACE(r.out, "\"block\":\"graded\"");
+    expect_text(SAID_PLACE(graded, "\"graded\":"), "true");
+    expect_text(SAID_PLACE(graded, "\"reason\":"), "\"no answers\"");
+    expect(SAID_PLACE(graded, "\"staircase_estimate\":"), 1.5, 0);
     program_free(&r);
 }
 
@@ -103,13 +89,13 @@ static void no_direction_no_bayes(void **state)
     study_file_sql("s.db", "UPDATE choice SET correct = 1 WHERE correct = 0");
     struct program_result r = FOVSTATS("thresholds", "s.db", "--json", "--bootstrap", "0");
     assert_int_equal(r.code, 0);
-    const char *again = AFTER(r.out, "\"block\":\"again\"");
-    expect_text(AFTER(again, "\"reason\":"), "\"every answer is a yes");
-    expect_text(AFTER(again, "\"bayes\":{", "\"mean\":"), "null");
+    const char *again = SAID_PLACE(r.out, "\"block\":\"again\"");
+    expect_text(SAID_PLACE(again, "\"reason\":"), "\"every answer is a yes");
+    expect_text(SAID_PLACE(again, "\"bayes\":{", "\"mean\":"), "null");
     program_free(&r);
     r = FOVSTATS("thresholds", "s.db", "--json", "--bootstrap", "0", "--larger", "harder");
-    again = AFTER(r.out, "\"block\":\"again\"");
-    assert_true(strtod(AFTER(again, "\"bayes\":{", "\"mean\":"), NULL) > 7);
+    again = SAID_PLACE(r.out, "\"block\":\"again\"");
+    assert_true(strtod(SAID_PLACE(again, "\"bayes\":{", "\"mean\":"), NULL) > 7);
     program_free(&r);
 }
 
@@ -122,11 +108,12 @@ static void direction_without_wrong_answers(void **state)
                    "UPDATE staircase_step SET outcome = 1; UPDATE choice SET correct = 1 WHERE correct = 0");
     struct program_result r = FOVSTATS("thresholds", "s.db", "--json", "--bootstrap", "0");
     assert_int_equal(r.code, 0);
-    const char *cell = AFTER(r.out, "\"block\":\"stairs\"");
-    expect_text(AFTER(cell, "\"larger\":"), "\"harder\"");
-    const char *first = AFTER(cell, "\"participant\":\"P01\"");
-    expect_text(AFTER(first, "\"reason\":"), "\"every answer is a yes");
-    assert_true(strtod(AFTER(first, "\"bayes\":{", "\"mean\":"), NULL) > 7); // beyond the hardest level shown
+    const char *cell = SAID_PLACE(r.out, "\"block\":\"stairs\"");
+    expect_text(SAID_PLACE(cell, "\"larger\":"), "\"harder\"");
+    const char *first = SAID_PLACE(cell, "\"participant\":\"P01\"");
+    expect_text(SAID_PLACE(first, "\"reason\":"), "\"every answer is a yes");
+    assert_true(strtod(SAID_PLACE(first, "\"bayes\":{", "\"mean\":"), NULL) >
+                7); // beyond the hardest level shown
     program_free(&r);
 }
 
@@ -137,18 +124,19 @@ static void constant_levels(void **state)
     struct program_result r = FOVSTATS("thresholds", "s.db", "--json", "--bootstrap", "0");
     assert_int_equal(r.code, 0);
     // tests/reference/psychometric.csv, "lapses at the top" and "preference"
-    const char *again = AFTER(r.out, "\"block\":\"again\""), *liked = AFTER(r.out, "\"block\":\"liked\"");
-    expect_text(AFTER(again, "\"parameter\":"), "\"dose\"");
-    expect_text(AFTER(again, "\"preference\":"), "false");
-    expect(AFTER(again, "\"people_together\":"), 0, 0);
-    expect(AFTER(again, "\"threshold\":"), 3.1375598260723097, 6e-4);
-    expect(AFTER(again, "\"guess\":"), 0.5, 0);
-    expect_text(AFTER(liked, "\"preference\":"), "true");
-    expect_text(AFTER(liked, "\"larger\":"), "\"easier\"");
-    expect(AFTER(liked, "\"people_together\":"), 20, 0);
-    expect(AFTER(liked, "\"participant\":\"all\"", "\"steps\":"), 140, 0);
-    expect(AFTER(liked, "\"threshold\":"), 3.4097276570650115, 6e-4);
-    expect(AFTER(liked, "\"lapse\":"), 0.21797053054181484, 1e-3);
+    const char *again = SAID_PLACE(r.out, "\"block\":\"again\""),
+               *liked = SAID_PLACE(r.out, "\"block\":\"liked\"");
+    expect_text(SAID_PLACE(again, "\"parameter\":"), "\"dose\"");
+    expect_text(SAID_PLACE(again, "\"preference\":"), "false");
+    expect(SAID_PLACE(again, "\"people_together\":"), 0, 0);
+    expect(SAID_PLACE(again, "\"threshold\":"), 3.1375598260723097, 6e-4);
+    expect(SAID_PLACE(again, "\"guess\":"), 0.5, 0);
+    expect_text(SAID_PLACE(liked, "\"preference\":"), "true");
+    expect_text(SAID_PLACE(liked, "\"larger\":"), "\"easier\"");
+    expect(SAID_PLACE(liked, "\"people_together\":"), 20, 0);
+    expect(SAID_PLACE(liked, "\"participant\":\"all\"", "\"steps\":"), 140, 0);
+    expect(SAID_PLACE(liked, "\"threshold\":"), 3.4097276570650115, 6e-4);
+    expect(SAID_PLACE(liked, "\"lapse\":"), 0.21797053054181484, 1e-3);
     program_free(&r);
     // Four levels are too few for a preference's four numbers; three are enough for right answers.
     study_file_sql("s.db",
@@ -172,11 +160,11 @@ static void one_person_is_not_pooled(void **state)
                    "ON c.trial_id = t.id WHERE t.block = 'liked'))");
     struct program_result r =
         FOVSTATS("thresholds", "s.db", "--json", "--bootstrap", "0", "--larger", "easier");
-    const char *liked = AFTER(r.out, "\"block\":\"liked\"");
-    expect(AFTER(liked, "\"people_together\":"), 0, 0);
+    const char *liked = SAID_PLACE(r.out, "\"block\":\"liked\"");
+    expect(SAID_PLACE(liked, "\"people_together\":"), 0, 0);
     assert_null(strstr(liked, "\"participant\":\"all\""));
-    const char *credible = AFTER(liked, "\"bayes\":{", "\"credible\":[");
-    assert_true(strtod(credible, NULL) < strtod(AFTER(credible, ","), NULL));
+    const char *credible = SAID_PLACE(liked, "\"bayes\":{", "\"credible\":[");
+    assert_true(strtod(credible, NULL) < strtod(SAID_PLACE(credible, ","), NULL));
     program_free(&r);
     r = FOVSTATS("thresholds", "s.db", "--bootstrap", "0");
     assert_null(strstr(r.out, "people share one function"));
@@ -202,16 +190,16 @@ static void adjusted_values(void **state)
     staircase_file_make("s.db");
     struct program_result r = FOVSTATS("thresholds", "s.db", "--json", "--bootstrap", "0");
     assert_int_equal(r.code, 0);
-    const char *cell = AFTER(r.out, "\"adjusted\":[");
+    const char *cell = SAID_PLACE(r.out, "\"adjusted\":[");
     // R: t.test(c(0.2, 0.4, 0.8)), the means of the people
-    expect(AFTER(cell, "\"n\":"), 3, 0);
-    expect(AFTER(cell, "\"mean\":"), 0.46666666666666667, 1e-14);
-    expect(AFTER(cell, "\"sd\":"), 0.30550504633038933, 1e-14);
-    expect(AFTER(cell, "\"median\":"), 0.4, 1e-14);
-    expect(AFTER(cell, "\"ci_low\":"), -0.29224994005268523, 1e-12);
-    expect(AFTER(cell, "\"ci_high\":"), 1.2255832733860186, 1e-12);
-    expect(AFTER(cell, "\"P03\",\"values\":"), 3, 0);
-    expect(AFTER(cell, "\"P03\"", "\"least\":"), 0.6, 1e-15);
+    expect(SAID_PLACE(cell, "\"n\":"), 3, 0);
+    expect(SAID_PLACE(cell, "\"mean\":"), 0.46666666666666667, 1e-14);
+    expect(SAID_PLACE(cell, "\"sd\":"), 0.30550504633038933, 1e-14);
+    expect(SAID_PLACE(cell, "\"median\":"), 0.4, 1e-14);
+    expect(SAID_PLACE(cell, "\"ci_low\":"), -0.29224994005268523, 1e-12);
+    expect(SAID_PLACE(cell, "\"ci_high\":"), 1.2255832733860186, 1e-12);
+    expect(SAID_PLACE(cell, "\"P03\",\"values\":"), 3, 0);
+    expect(SAID_PLACE(cell, "\"P03\"", "\"least\":"), 0.6, 1e-15);
     program_free(&r);
 }
 
@@ -231,33 +219,21 @@ static void only_ended_staircases_have_estimates(void **state)
                    "ON t.id = c.trial_id JOIN session s ON s.id = t.session_id JOIN participant p ON p.id = "
                    "s.participant_id WHERE p.code = 'P01' AND t.block = 'stairs')");
     struct program_result r = FOVSTATS("thresholds", "s.db", "--json", "--bootstrap", "0");
-    const char *cell = AFTER(r.out, "\"block\":\"stairs\"");
-    expect_text(AFTER(cell, "\"participant\":\"P03\"", "\"staircase_estimate\":"), "null");
-    expect(AFTER(cell, "\"participant\":\"P02\"", "\"staircase_estimate\":"), 6, 0);
-    expect(AFTER(cell, "\"participant\":\"P01\"", "\"steps\":"), 139, 0);
-    expect(AFTER(r.out, "\"not_finite\":"), 1, 0);
+    const char *cell = SAID_PLACE(r.out, "\"block\":\"stairs\"");
+    expect_text(SAID_PLACE(cell, "\"participant\":\"P03\"", "\"staircase_estimate\":"), "null");
+    expect(SAID_PLACE(cell, "\"participant\":\"P02\"", "\"staircase_estimate\":"), 6, 0);
+    expect(SAID_PLACE(cell, "\"participant\":\"P01\"", "\"steps\":"), 139, 0);
+    expect(SAID_PLACE(r.out, "\"not_finite\":"), 1, 0);
     program_free(&r);
 }
 
 static void text_is_as_it_was(void **state)
 {
     (void)state;
-    char path[512];
-    static char golden[65536];
     staircase_file_make("s.db");
     struct program_result r = FOVSTATS("thresholds", "s.db", "--bootstrap", "0");
     assert_int_equal(r.code, 0);
-    snprintf(path, sizeof path, "%s/tests/analysis/golden/thresholds.txt", SOURCE_DIR);
-    FILE *file = fopen(path, "r");
-    if (!file)
-        fail_msg("%s is missing; it should read:\n%s", path, r.out);
-    golden[fread(golden, 1, sizeof golden - 1, file)] = '\0';
-    fclose(file);
-    char *hash = strstr(r.out, "SHA-256 "); // the golden file has HASH: provenance has its own test
-    assert_non_null(hash);
-    memmove(hash + 8 + 4, hash + 8 + 64, strlen(hash + 8 + 64) + 1);
-    memcpy(hash + 8, "HASH", 4);
-    assert_string_equal(r.out, golden);
+    said_golden(r.out, "thresholds.txt");
     program_free(&r);
 }
 
@@ -268,11 +244,11 @@ static void options_are_heeded(void **state)
     struct program_result r = FOVSTATS("thresholds", "s.db", "--json", "--family", "weibull", "--larger",
                                        "harder", "--bootstrap", "0");
     assert_int_equal(r.code, 0);
-    expect_text(AFTER(r.out, "\"family\":"), "\"weibull\"");
-    const char *cell = AFTER(r.out, "\"block\":\"stairs\"");
-    expect_text(AFTER(cell, "\"larger\":"), "\"harder\"");
+    expect_text(SAID_PLACE(r.out, "\"family\":"), "\"weibull\"");
+    const char *cell = SAID_PLACE(r.out, "\"block\":\"stairs\"");
+    expect_text(SAID_PLACE(cell, "\"larger\":"), "\"harder\"");
     // answers that get better with larger levels have no threshold of that kind
-    expect_text(AFTER(cell, "\"participant\":\"P01\"", "\"reason\":"), "\"the level has no effect");
+    expect_text(SAID_PLACE(cell, "\"participant\":\"P01\"", "\"reason\":"), "\"the level has no effect");
     program_free(&r);
     static const char *const wrong[][2] = {{"--family", "probit"},
                                            {"--larger", "smaller"},
@@ -300,12 +276,12 @@ static void jod_of_a_star(void **state)
     struct program_result r = FOVSTATS("jod", "c.db", "--json");
     assert_int_equal(r.code, 0);
     // R: qnorm(6 / 22) / qnorm(0.75), qnorm(4 / 19) / qnorm(0.75)
-    expect(AFTER(r.out, "epsilon 0.2\"", "\"jod\":"), -0.89635957612028561, 1e-9);
-    expect(AFTER(r.out, "epsilon 0.05\"", "\"jod\":"), -1.1928963785237581, 1e-9);
-    expect(AFTER(r.out, "\"option\":\"regular\"", "\"jod\":"), 0, 0);
-    expect(AFTER(r.out, "epsilon 0.2\"", "\"preferred\":"), 6, 0);
-    double low = strtod(AFTER(r.out, "epsilon 0.2\"", "\"ci_low\":"), NULL),
-           high = strtod(AFTER(r.out, "epsilon 0.2\"", "\"ci_high\":"), NULL);
+    expect(SAID_PLACE(r.out, "epsilon 0.2\"", "\"jod\":"), -0.89635957612028561, 1e-9);
+    expect(SAID_PLACE(r.out, "epsilon 0.05\"", "\"jod\":"), -1.1928963785237581, 1e-9);
+    expect(SAID_PLACE(r.out, "\"option\":\"regular\"", "\"jod\":"), 0, 0);
+    expect(SAID_PLACE(r.out, "epsilon 0.2\"", "\"preferred\":"), 6, 0);
+    double low = strtod(SAID_PLACE(r.out, "epsilon 0.2\"", "\"ci_low\":"), NULL),
+           high = strtod(SAID_PLACE(r.out, "epsilon 0.2\"", "\"ci_high\":"), NULL);
     assert_true(low < -1.3 && low > -2.2 && high > -0.5 && high < 0.1); // delta method: -1.73 to -0.07
     program_free(&r);
     // One of 22 for it: in R, pbinom(0, 22, 1 / 22) = 0.359 of the replicates have none.
@@ -317,10 +293,10 @@ static void jod_of_a_star(void **state)
         "IN "
         "(SELECT min(c.id) FROM choice c JOIN trial t ON t.id = c.trial_id GROUP BY t.option_a, t.option_b)");
     r = FOVSTATS("jod", "c.db", "--json");
-    const char *few = AFTER(r.out, "epsilon 0.2\"");
-    expect_text(AFTER(few, "\"ci_low\":"), "null");
-    expect_text(AFTER(few, "\"ci_low_open\":"), "true");
-    expect_text(AFTER(few, "\"ci_high_open\":"), "false");
+    const char *few = SAID_PLACE(r.out, "epsilon 0.2\"");
+    expect_text(SAID_PLACE(few, "\"ci_low\":"), "null");
+    expect_text(SAID_PLACE(few, "\"ci_low_open\":"), "true");
+    expect_text(SAID_PLACE(few, "\"ci_high_open\":"), "false");
     program_free(&r);
     r = FOVSTATS("jod", "c.db");
     assert_non_null(strstr(r.out, " below -"));

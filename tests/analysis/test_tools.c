@@ -1,5 +1,4 @@
-// fovstats as a user meets it: one sentence for each wrong use and for each file that cannot be read, what
-// every subcommand does alike.
+// fovstats as a user meets it: one sentence for each wrong use, what every subcommand does alike.
 #include "program.h"
 #include "said.h"
 #include "study_file.h"
@@ -11,7 +10,6 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <cmocka.h>
 
@@ -22,50 +20,47 @@ static const char fovstats[] = BUILD_DIR "/bin/fovstats";
 static void wrong_use(void **state)
 {
     (void)state;
-    said_sentence(program_run((const char *const[]){fovstats, NULL}, NULL), 2, "which subcommand?");
-    said_sentence(FOVSTATS("binomial"), 2, "no subcommand \"binomial\"");
-    said_sentence(FOVSTATS("binom"), 2, "needs K and N");
-    said_sentence(FOVSTATS("binom", "1", "2", "3"), 2, "needs K and N");
-    said_sentence(FOVSTATS("binom", "23", "22"), 2, "K is 23 but cannot exceed N, which is 22");
-    said_sentence(FOVSTATS("binom", "-1", "22"), 2, "K is \"-1\"");
-    said_sentence(FOVSTATS("binom", "x", "22"), 2, "K is \"x\"");
-    said_sentence(FOVSTATS("binom", "6", "22.5"), 2, "N is \"22.5\"");
-    said_sentence(FOVSTATS("binom", "0", "0"), 2, "N is \"0\"");
-    said_sentence(FOVSTATS("binom", "99999999999999999999", "22"), 2, "K is \"99999999999999999999\"");
-    said_sentence(FOVSTATS("binom", "1", "99999999999999999999"), 2, "N is \"99999999999999999999\"");
-    said_sentence(FOVSTATS("binom", "1", "1000000001"), 2, "from 1 to 1000000000");
-    said_sentence(FOVSTATS("binom", "1", "2", "--p", "1.5"), 2, "--p is 1.5 but must be from 0 to 1");
-    said_sentence(FOVSTATS("binom", "1", "2", "--p", "-0.1"), 2, "--p is -0.1");
-    said_sentence(FOVSTATS("binom", "1", "2", "--p", "nan"), 2, "--p is \"nan\" but must be a number");
-    said_sentence(FOVSTATS("binom", "1", "2", "--p", "half"), 2, "--p is \"half\" but must be a number");
-    said_sentence(FOVSTATS("binom", "1", "2", "--p", "1e999"), 2, "--p is \"1e999\" but must be a number");
-    said_sentence(FOVSTATS("binom", "1", "2", "--conf", "0"), 2, "--conf is 0 but must lie between 0 and 1");
-    said_sentence(FOVSTATS("binom", "1", "2", "--conf", "1"), 2, "--conf is 1 but must lie between 0 and 1");
-    said_sentence(FOVSTATS("binom", "1", "2", "--conf"), 2, "--conf needs a value");
-    said_sentence(FOVSTATS("binom", "1", "2", "--alternative", "both"), 2, "--alternative is \"both\"");
-    said_sentence(FOVSTATS("binom", "1", "2", "--p0", "7"), 2, "--p is 7");
-    said_sentence(FOVSTATS("binom", "1", "2", "--margin", "0.6"), 2, "--margin is 0.6 but must be above 0");
-    said_sentence(FOVSTATS("binom", "1", "2", "--margin", "-0.1"), 2, "--margin is -0.1");
-    said_sentence(FOVSTATS("binom", "1", "2", "--margin", "0.1", "--conf", "0.5"), 2,
-                  "--margin needs more than 0.5");
-    said_sentence(FOVSTATS("binom", "1", "2", "--prior", "1"), 2, "--prior is \"1\"");
-    said_sentence(FOVSTATS("binom", "1", "2", "--prior", "1,0"), 2, "--prior is \"1,0\"");
-    said_sentence(FOVSTATS("binom", "1", "2", "--prior", "1,2,3"), 2, "--prior is \"1,2,3\"");
-    said_sentence(FOVSTATS("binom", "1", "2", "--share", "1.01"), 2, "--share is 1.01");
-    said_sentence(FOVSTATS("binom", "1", "2", "--power", "1"), 2, "--power is 1 but must lie between 0 and 1");
-    said_sentence(FOVSTATS("binom", "1", "2", "--quiet"), 2, "--quiet is not an option");
-    said_sentence(FOVSTATS("choices"), 2, "needs at least one study file");
-    said_sentence(FOVSTATS("choices", "x.db", "--conf", "1"), 2, "--conf is 1");
-    said_sentence(FOVSTATS("report", "x.db"), 2, "needs -o FILE.html");
-    said_sentence(FOVSTATS("report", "x.db", "-o"), 2, "-o needs a value");
+    static const struct said_case cases[] = {
+        {{NULL}, "which subcommand?"},
+        {{"binomial"}, "no subcommand \"binomial\""},
+        {{"binom"}, "needs K and N"},
+        {{"binom", "1", "2", "3"}, "needs K and N"},
+        {{"binom", "-1", "22"}, "K is \"-1\""},
+        {{"binom", "x", "22"}, "K is \"x\""},
+        {{"binom", "6", "22.5"}, "N is \"22.5\""},
+        {{"binom", "0", "0"}, "N is \"0\""},
+        {{"binom", "99999999999999999999", "22"}, "K is \"99999999999999999999\""},
+        {{"binom", "1", "99999999999999999999"}, "N is \"99999999999999999999\""},
+        {{"binom", "1", "1000000001"}, "from 1 to 1000000000"},
+        {{"binom", "1", "2", "--p", "nan"}, "--p is \"nan\" but must be a number"},
+        {{"binom", "1", "2", "--p", "half"}, "--p is \"half\" but must be a number"},
+        {{"binom", "1", "2", "--p", "1e999"}, "--p is \"1e999\" but must be a number"},
+        {{"binom", "1", "2", "--conf"}, "--conf needs a value"},
+        {{"binom", "1", "2", "--alternative", "both"}, "--alternative is \"both\""},
+        {{"binom", "1", "2", "--p0", "7"}, "--p is 7"},
+        {{"binom", "1", "2", "--margin", "0.6"}, "--margin is 0.6 but must be above 0"},
+        {{"binom", "1", "2", "--margin", "-0.1"}, "--margin is -0.1"},
+        {{"binom", "1", "2", "--margin", "0.1", "--conf", "0.5"}, "--margin needs more than 0.5"},
+        {{"binom", "1", "2", "--prior", "1"}, "--prior is \"1\""},
+        {{"binom", "1", "2", "--prior", "1,0"}, "--prior is \"1,0\""},
+        {{"binom", "1", "2", "--prior", "1,2,3"}, "--prior is \"1,2,3\""},
+        {{"binom", "1", "2", "--share", "1.01"}, "--share is 1.01"},
+        {{"binom", "1", "2", "--power", "1"}, "--power is 1 but must lie between 0 and 1"},
+        {{"binom", "1", "2", "--quiet"}, "--quiet is not an option"},
+        {{"choices"}, "needs at least one study file"},
+        {{"report", "x.db"}, "needs -o FILE.html"},
+        {{"report", "x.db", "-o"}, "-o needs a value"},
+    };
+    said_wrong_use(cases, sizeof cases / sizeof cases[0]);
 }
 
 static void help_everywhere(void **state)
 {
     (void)state;
-    const char *names[] = {"binom", "choices", "ratings", "frames", "power", "report"};
+    const char *names[] = {"anova", "binom",   "choices", "export",  "frames", "gaze",      "jod",
+                           "merge", "planned", "power",   "ratings", "report", "thresholds"};
     struct program_result all = FOVSTATS("--help");
-    for (int i = 0; i < 6; i++) {
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         struct program_result r = FOVSTATS(names[i], "--help");
         assert_int_equal(r.code, 0);
         assert_non_null(strstr(r.out, names[i]));
@@ -76,48 +71,21 @@ static void help_everywhere(void **state)
     program_free(&all);
 }
 
-static void unreadable_files(void **state)
+// What cannot be read alone is in test_bad_input.c.
+static void files_that_do_not_go_together(void **state)
 {
     (void)state;
     const char *commands[] = {"choices", "ratings", "frames"};
-    study_file_sql("other.db", "CREATE TABLE t(x); INSERT INTO t VALUES(1)");
-    study_file_make("newer.db", &(struct study_desc){0});
-    study_file_sql("newer.db", "PRAGMA user_version = 999");
-    study_file_make("older.db", &(struct study_desc){0});
-    study_file_sql("older.db", "PRAGMA user_version = 0");
-    study_file_make("empty.db", &(struct study_desc){.empty = true});
-    study_file_make("bare.db", &(struct study_desc){.bare = true});
     study_file_make("simulated.db", &(struct study_desc){.simulated = true});
     study_file_make("real.db", &(struct study_desc){0});
-    study_file_make("torn.db", &(struct study_desc){0});
-    assert_int_equal(truncate("torn.db", 6000), 0);
-    FILE *file = fopen("text.db", "w");
-    fputs("this is not a database, but a text of more than a hundred bytes, so that SQLite looks at its head, "
-          "and sees none",
-          file);
-    fclose(file);
-    fclose(fopen("nothing.db", "w"));
     for (int i = 0; i < 3; i++) {
         const char *c = commands[i];
-        said_sentence(FOVSTATS(c, "missing.db"), 1, "missing.db: there is no such file");
-        said_sentence(FOVSTATS(c, "."), 1, ".: is not a file");
-        said_sentence(FOVSTATS(c, "text.db"), 1, "text.db: is not a study file (not an SQLite database)");
-        said_sentence(FOVSTATS(c, "nothing.db"), 1, "nothing.db: is not a study file (the file is empty)");
-        said_sentence(FOVSTATS(c, "other.db"), 1, "other.db: is another program's database");
-        said_sentence(FOVSTATS(c, "newer.db"), 1, "newer.db: was written by a newer program (version 999");
-        said_sentence(FOVSTATS(c, "older.db"), 1, "older.db: is of an older version");
-        said_sentence(FOVSTATS(c, "torn.db"), 1, "torn.db: the study file is damaged");
-        said_sentence(FOVSTATS(c, "empty.db"), 1, "empty.db: the study is empty");
         said_sentence(FOVSTATS(c, "simulated.db"), 1,
                       "only simulated sessions (22) are in it; add --simulated");
-        said_sentence(FOVSTATS(c, "real.db", "--simulated"), 1, "holds sessions of people");
         said_sentence(FOVSTATS(c, "simulated.db", "real.db", "--simulated"), 1,
                       "real.db: holds sessions of people");
         said_sentence(FOVSTATS(c, "real.db", "./real.db"), 1, "is given twice");
     }
-    said_sentence(FOVSTATS("choices", "bare.db"), 1, "bare.db: no choice was recorded");
-    said_sentence(FOVSTATS("ratings", "bare.db"), 1, "bare.db: no rating of an option was recorded");
-    said_sentence(FOVSTATS("frames", "bare.db"), 1, "bare.db: no frame was recorded");
     const char *cp[] = {"/bin/cp", "real.db", "copy.db", NULL};
     struct program_result r = program_run(cp, NULL);
     program_free(&r);
@@ -174,9 +142,12 @@ static void files_add_up(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(wrong_use),         cmocka_unit_test(help_everywhere),
-        cmocka_unit_test(unreadable_files),  cmocka_unit_test(reading_changes_nothing),
-        cmocka_unit_test(simulated_is_said), cmocka_unit_test(files_add_up),
+        cmocka_unit_test(wrong_use),
+        cmocka_unit_test(help_everywhere),
+        cmocka_unit_test(files_that_do_not_go_together),
+        cmocka_unit_test(reading_changes_nothing),
+        cmocka_unit_test(simulated_is_said),
+        cmocka_unit_test(files_add_up),
     };
     return cmocka_run_group_tests(tests, program_enter_folder, program_leave_folder);
 }

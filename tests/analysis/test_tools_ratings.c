@@ -36,6 +36,7 @@ static void ratings_agree_with_r(void **state)
     assert_true(fabs(said_after(r.out, places[0], "p_value") - 0.0092) < 5e-5);
     assert_true(fabs(said_after(r.out, places[1], "p_value") - 0.0959) < 5e-5);
     assert_true(said_after(r.out, "{", "unpaired_sessions") == 2);
+    assert_non_null(strstr(r.out, "\"first_between_groups_is\":\"regular minus time_warped epsilon 0.2\""));
     program_free(&r);
     r = FOVSTATS("ratings", "s.db");
     said_golden(r.out, "ratings.txt");

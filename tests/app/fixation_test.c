@@ -68,6 +68,9 @@ static const char *ask(const char *query)
 
 #define expect(query, answer) assert_string_equal(ask(query), answer)
 #define SEEN " FROM frame f JOIN trial t ON t.id = f.trial_id WHERE f.condition_id IS NOT NULL AND block "
+#define SEEN_IN                                                                                                \
+    " FROM frame f JOIN trial t ON t.id = f.trial_id JOIN session s ON s.id = f.session_id WHERE "             \
+    "f.condition_id IS NOT NULL AND block "
 
 static void the_fovea_is_on_the_target(void **state)
 {
@@ -79,13 +82,23 @@ static void the_fovea_is_on_the_target(void **state)
            "0");
     expect("SELECT count(*)" SEEN "= 'four' AND target_x_deg IS NOT NULL", "0");
     expect("SELECT count(*)" SEEN "= 'two' AND (target_x_deg <> 0 OR target_y_deg <> 0)", "0");
-    // Both eyes' foveae lie around the target's direction, the left eye's to the right of the right one's.
-    expect("SELECT count(*)" SEEN
-           "IN ('one', 'two') AND NOT (json_extract(fovea, '$[0][0]') > target_x_deg - 1e-9 "
-           "AND json_extract(fovea, '$[1][0]') < target_x_deg + 1e-9 AND abs((json_extract(fovea, '$[0][0]') + "
-           "json_extract(fovea, '$[1][0]')) / 2 - target_x_deg) < 0.1 AND abs(json_extract(fovea, '$[0][1]') - "
-           "target_y_deg) < 0.1)",
-           "0");
+    // Each eye's fovea is where that eye sees the target: from the row's direction and distance, half an
+    // interpupillary distance beside the middle.
+    expect(
+        "WITH p AS (SELECT json_extract(fovea, '$.left[0]') AS lx, json_extract(fovea, '$.left[1]') AS ly, "
+        "json_extract(fovea, '$.right[0]') AS rx, json_extract(fovea, '$.right[1]') AS ry, target_m * "
+        "sin(radians(target_x_deg)) * cos(radians(target_y_deg)) AS x, target_m * sin(radians(target_y_deg)) "
+        "AS y, target_m * cos(radians(target_x_deg)) * cos(radians(target_y_deg)) AS ahead, "
+        "json_extract(s.settings, '$.ipd_m') / 2 AS h, target_m" SEEN_IN
+        "IN ('one', 'two') AND fovea IS NOT NULL), d AS (SELECT target_m, lx - rx AS apart, "
+        "abs(lx - degrees(atan2(x + h, ahead))) + abs(rx - degrees(atan2(x - h, ahead))) + "
+        "abs(ly - degrees(atan2(y, sqrt((x + h) * (x + h) + ahead * ahead)))) + "
+        "abs(ry - degrees(atan2(y, sqrt((x - h) * (x - h) + ahead * ahead)))) AS off FROM p) "
+        "SELECT count(*) > 60, count(off) = count(*), max(off) < 1e-9, min(apart) > 0, "
+        "min(target_m) >= 0.5, max(target_m) < 100.001 FROM d",
+        "1|1|1|1|1|1");
+    expect("SELECT count(*)" SEEN "= 'three' AND target_m IS NULL", "0");
+    expect("SELECT count(*)" SEEN "= 'four' AND target_m IS NOT NULL", "0");
     expect("SELECT count(*)" SEEN
            "IN ('one', 'two', 'three') AND (abs(target_x_deg) > 10.3 OR abs(target_y_deg) > "
            "11.68)",

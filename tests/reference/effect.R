@@ -3,6 +3,7 @@
 #   far: the same for t beyond R's 37.62, on the integral over the chi distribution by integrate()
 #   lower: 0, expected (P(T <= t)), t df ncp
 #   holm, hochberg, bh: 0, expected, p        p.adjust
+#   exclusive: 0, expected, p, set            Shaffer's steps, what can be true found by trying every subset of what is left
 set.seed(19810602)
 lines <- c()
 short <- function(v) { s <- sprintf("%.15g", v); if (is.finite(v) && as.numeric(s) != v) sprintf("%.17g", v) else s }
@@ -63,5 +64,25 @@ for (i in 1:40) {
   add("holm", 0, p.adjust(p, "holm"), p)
   add("hochberg", 0, p.adjust(p, "hochberg"), p)
   add("bh", 0, p.adjust(p, "BH"), p)
+}
+exclusive <- function(p, set) {
+  out <- rep(NaN, length(p)); left <- which(!is.nan(p)); most <- 0
+  while (length(left)) {
+    possible <- sapply(0:(2^length(left) - 1), function(b) {
+      true <- left[bitwAnd(b, 2^(seq_along(left) - 1)) > 0]
+      if (anyDuplicated(set[true])) 0 else length(true)
+    })
+    i <- left[which.min(p[left])]
+    most <- max(most, min(1, max(possible) * p[i])); out[i] <- most
+    left <- setdiff(left, i)
+  }
+  out
+}
+for (i in 1:40) {
+  n <- sample(c(1:8, 10), 1)
+  p <- switch(i %% 3 + 1, runif(n), runif(n)^6, round(runif(n)^3, 1))
+  if (i %% 5 == 0) p[sample(n, max(1, n %/% 4))] <- NaN
+  set <- switch(i %% 4 + 1, (seq_len(n) - 1) %/% 2, sample(n, n, TRUE) - 1, seq_len(n) - 1, rep(0, n))
+  add("exclusive", 0, exclusive(p, set), p, set)
 }
 writeLines(lines, "effect.csv")

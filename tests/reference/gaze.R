@@ -2,10 +2,12 @@
 # Base R only. Each line: what, name, then fields of numbers by spaces.
 #   spread: x, y; then n, sd x, sd y, sd both, BCEA at 0.682 (by its formula with sd() and cor()), RMS of steps x, y, both
 #   angle: x1 y1 x2 y2 in degrees; the angle by atan2 of cross and dot product
+#   eye: x y of a point from the middle between the eyes, its distance, the eye's distance to the right (metres); x y as that
+#     eye sees it, by rotating the head so that it looks along x first
 #   sequence: amplitudes; velocities; nls() of vmax (1 - exp(-A / c)): vmax, its error, c, its error, residual SD; lm() of
 #     logs: ln k, its error, b, its error; t quantile of n - 2 at 95 %
-#   ivt, idt: times in ms; x; y; parameters (velocity, window, least fixation, least saccade, merge ms, merge deg; or
-#     dispersion, least fixation); then events as kind (1 fixation, 2 saccade), first, last (from 0), amplitude, peak
+#   ivt, idt: times in ms; x; y; parameters (velocity, window, least fixation, least saccade, merge ms, merge deg, window of
+#     the peak; or dispersion, least fixation); then events as kind (1 fixation, 2 saccade), first, last (from 0), amplitude, peak
 #     (0 of fixations). By the definitions, sample by sample, without a moving window.
 out <- file(file.path(dirname(sub("--file=", "", grep("--file=", commandArgs(FALSE), value = TRUE))), "gaze.csv"), "w")
 line <- function(...) writeLines(paste(..., sep = ","), out)
@@ -68,7 +70,7 @@ velocities <- function(t, x, y, window) {
   })
 }
 ivt <- function(name, t, x, y, p) {
-  v <- velocities(t, x, y, p[2])
+  v <- velocities(t, x, y, p[2]); peaks <- velocities(t, x, y, p[7])
   runs <- rle(v > p[1])
   last <- cumsum(runs$lengths); first <- last - runs$lengths + 1
   # fixations as lists of samples, joined while two neighbours are close
@@ -88,7 +90,7 @@ ivt <- function(name, t, x, y, p) {
   events <- rbind(
     do.call(rbind, lapply(Filter(function(f) t[f[2]] - t[f[1]] >= p[3], fix), function(f) c(1, f - 1, 0, 0))),
     do.call(rbind, lapply(Filter(function(s) t[s[2]] - t[s[1]] >= p[4], sac), function(s)
-      c(2, s - 1, angle(x[s[1]], y[s[1]], x[s[2]], y[s[2]]), max(v[s[1]:s[2]])))))
+      c(2, s - 1, angle(x[s[1]], y[s[1]], x[s[2]], y[s[2]]), max(peaks[s[1]:s[2]])))))
   if (!is.null(events)) events <- events[order(events[, 2]), , drop = FALSE]
   line("ivt", name, num(t), num(x), num(y), num(p), if (is.null(events)) "" else num(t(events)))
 }
@@ -118,13 +120,13 @@ walk <- function(n, hz, noise) {
   }
   list(t = t, x = x + rnorm(n, 0, noise), y = y + rnorm(n, 0, noise))
 }
-usual <- c(30, 20, 60, 10, 75, 0.5)
+usual <- c(30, 20, 60, 10, 75, 0.5, 8)
 for (i in 1:12) {
   hz <- c(60, 120, 250, 500)[(i - 1) %% 4 + 1]
   w <- walk(250, hz, c(0.01, 0.1, 0.4)[(i - 1) %/% 4 + 1])
   name <- sprintf("%g Hz noise %d", hz, (i - 1) %/% 4 + 1)
   ivt(name, w$t, w$x, w$y, usual)
-  ivt(paste(name, "plain"), w$t, w$x, w$y, c(50, 0, 0, 0, 0, 0))
+  ivt(paste(name, "plain"), w$t, w$x, w$y, c(50, 0, 0, 0, 0, 0, 0))
   idt(name, w$t, w$x, w$y, c(1, 100))
   idt(paste(name, "tight"), w$t, w$x, w$y, c(0.3, 50))
 }
@@ -134,4 +136,19 @@ idt("constant", still, still * 0 + 3, still * 0 - 2, c(1, 100))
 ivt("two samples", c(0, 4), c(0, 0), c(0, 0), usual)
 ivt("ramp above the threshold", still, still * 0.031, still * 0, usual)
 ivt("ramp below the threshold", still, still * 0.029, still * 0, usual)
+
+# A point on the horizontal circle of the eyes' axis: with the head turned by x it lies straight ahead and up by y, and the eye
+# lies to the right by right cos(x) and ahead by right sin(x).
+eye <- function(name, x, y, distance, right) {
+  rx <- x * pi / 180; ry <- y * pi / 180
+  ahead <- distance * cos(ry) - right * sin(rx); side <- -right * cos(rx); up <- distance * sin(ry)
+  line("eye", name, num(c(x, y, distance, right)),
+       num(c(x + atan2(side, ahead) * 180 / pi, atan(up / sqrt(ahead^2 + side^2)) * 180 / pi)))
+}
+eye("ahead one metre left", 0, 0, 1, -0.0315)
+eye("ahead one metre right", 0, 0, 1, 0.0315)
+eye("ahead half a metre", 0, 0, 0.5, -0.0315)
+eye("far", 5, -3, 1e6, 0.0315)
+eye("middle", 12, 7, 2, 0)
+for (i in 1:12) eye(paste("random", i), runif(1, -50, 50), runif(1, -40, 40), runif(1, 0.3, 5), runif(1, -0.04, 0.04))
 close(out)

@@ -2,10 +2,14 @@
 # writes power_plan.csv beside itself. Columns: what, n, cells, df, x, sd, margin, alpha, power, value, error (the
 # simulation's standard error, 0 where there is none).
 #   equivalence          n choices, x the true share: every k tried with two one-sided binom.test
-#   equivalence_first, equivalence_stays   the same, people for `power` among the first 400 sizes
+#   equivalence_first, equivalence_stays   the same, people for `power` among the first n sizes; 0 where one of the first
+#                        1.5 n has not the power though all from `stays` to n have it: a claim on those beyond n would be false
 #   equivalence_many     n people with `cells` choices each: 20,000 simulated studies, two one-sided t.test of the shares
 #   anova                n people, x is f: mean over the error's chi-squared of a noncentral chi-squared, by integrate()
 #   anova_aov            the same by 4,000 simulated studies through aov() with Error(), two factors of 3 and 2 levels
+#   anova_size           people for `power`, x is f: the first size that has it by the integral
+#   none, none_margin    n people of whom the 3rd and the 22nd of each 22 make no choice, the others one, x the true share:
+#                        every count of the choices tried with binom.test; _first, _stays: people for `power`, of 120 sizes
 #   paired_size, two_size   people for `power`, x is d: power.t.test(strict = TRUE) for each size in turn, and pt with a
 #                        noncentrality for halves of odd numbers
 set.seed(20261126)
@@ -84,4 +88,42 @@ for (d in c(0.3, 0.5, 0.8, 1.5))
     while (two_power(ceiling(n / 2), floor(n / 2), d, 0.05) < power) n <- n + 1
     add("two_size", 0, 0, 0, d, 0, 0, 0.05, power, n)
   }
+
+# The end of the search: sizes up to which all from some size on have the power, and one beyond has not.
+for (design in list(c(0.2, 0.5, 0.05, 0.8), c(0.15, 0.5, 0.05, 0.9), c(0.25, 0.55, 0.025, 0.8))) {
+  reached <- sapply(1:200, function(n) equivalence(n, design[1], design[2], design[3])) >= design[4]
+  truth <- max(which(!reached)) + 1
+  stopifnot(truth < 133)
+  false <- Filter(function(most) reached[most] && max(which(!reached[1:most])) + 1 != truth, 20:truth)
+  stopifnot(length(false) > 1)
+  for (most in false) {
+    add("equivalence_first", most, 1, 0, design[2], 0, design[1], design[3], design[4], 0)
+    add("equivalence_stays", most, 1, 0, design[2], 0, design[1], design[3], design[4], 0)
+  }
+  most <- ceiling(1.2 * truth)
+  add("equivalence_first", most, 1, 0, design[2], 0, design[1], design[3], design[4], which(reached)[1])
+  add("equivalence_stays", most, 1, 0, design[2], 0, design[1], design[3], design[4], truth)
+}
+
+for (design in list(c(6, 2, 0.25), c(6, 1, 0.25), c(24, 6, 0.15), c(24, 1, 0.15)))
+  for (power in c(0.8, 0.95)) {
+    n <- 2
+    while (anova_power(n, design[1], design[2], design[3], 0.05) < power) n <- n + 1
+    add("anova_size", 0, design[1], design[2], design[3], 0, 0, 0.05, power, n)
+  }
+
+one_or_none <- replace(rep(1, 22), c(3, 22), 0)
+choices_of <- function(people) sum(rep(one_or_none, length.out = people))
+difference <- function(n, share, alpha) sum(dbinom(Filter(function(k) binom.test(k, n)$p.value <= alpha, 0:n), n, share))
+for (kind in c("none", "none_margin")) {
+  share <- if (kind == "none") 0.75 else 0.5
+  margin <- if (kind == "none") 0 else 0.2
+  power_of <- function(n) if (kind == "none") difference(n, share, 0.05) else equivalence(n, margin, share, 0.05)
+  by_choices <- sapply(1:120, power_of)
+  of <- sapply(1:120, function(people) by_choices[choices_of(people)])
+  for (people in c(2, 3, 20, 22, 25, 44, 50)) add(kind, people, 1, 0, share, 0, margin, 0.05, NA, of[people])
+  reached <- of >= 0.8
+  add(paste0(kind, "_first"), 120, 1, 0, share, 0, margin, 0.05, 0.8, which(reached)[1])
+  add(paste0(kind, "_stays"), 120, 1, 0, share, 0, margin, 0.05, 0.8, max(which(!reached)) + 1)
+}
 writeLines(c("what,n,cells,df,x,sd,margin,alpha,power,value,error", unlist(rows)), "power_plan.csv")

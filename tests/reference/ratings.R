@@ -95,4 +95,19 @@ change <- c(1, 3, 1, 1, 1, 1, 1, -2, -1, 0, 0)
 stopifnot(enumerate(change) != enumerate(change, TRUE))
 add("changed.rank_p", enumerate(change))
 add("changed.pratt_p", enumerate(change, TRUE))
+# Before and after with a repeated trial (test_ratings_edges.c): who saw time_warped first, rated regular and then
+# time_warped again has no first rating. first, second of persons 3 and 5, and of 2, 4 and 6:
+test <- list(first = c(7, 6), second = c(8, 9)); regular <- list(first = c(6, 5, 7), second = c(7, 8, 9))
+for (name in c("test", "regular")) {
+  x <- get(name); t <- t.test(x$second, x$first, paired = TRUE)
+  add(paste0("order.", name, ".estimate"), t$estimate)
+  add(paste0("order.", name, ".p_value"), t$p.value)
+}
+w <- t.test(regular$first, test$first)
+add("order.between.estimate", -diff(w$estimate))
+add("order.between.p_value", w$p.value)
+# Three sittings averaged: changes as fractions, sums of second less first over how many
+change <- c(3, -1, 3, -1, 3, 1, 2) / c(3, 1, 3, 1, 3, 1, 1)
+add("sittings.rank_v", sum(rank(abs(change))[change > 0]))
+add("sittings.rank_p", enumerate(change))
 writeLines(out, "ratings.csv")

@@ -175,6 +175,7 @@ struct store_frame fixture_frame(const struct fixture_session *session, uint64_t
                                 .fovea_source = STORE_FOVEA_GAZE,
                                 .target_x_deg = NAN,
                                 .target_y_deg = NAN,
+                                .target_m = NAN,
                                 .head_pose = {{1, 1.6, -2}, {0, 0, 0, 1}},
                                 .shaded_px = 12345,
                                 .triangles = 678};

@@ -161,6 +161,12 @@ static void test_catch_trials(void **state)
         assert_true(taken.rows[0].caught);
         assert_int_equal(taken.rows[0].missed, cases[i].missed);
     }
+    // Without a test slot nothing tells which option was the right one; equal they are not.
+    assert_int_equal(outsider(path, "UPDATE trial SET test_slot = NULL; UPDATE choice SET correct = NULL"), 0);
+    assert_false(read_facts(path, 1, 1).rows[0].caught);
+    assert_int_equal(outsider(path, "UPDATE choice SET chosen = 'equal'"), 0);
+    struct taken taken = read_facts(path, 1, 1);
+    assert_true(taken.rows[0].caught && taken.rows[0].missed);
 }
 
 static void test_twice_changes_nothing(void **state)

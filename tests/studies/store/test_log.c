@@ -68,6 +68,7 @@ static void test_rows(void **state)
                                  .gaze_age_us = NAN,
                                  .fovea_deg = {{NAN, NAN}, {NAN, NAN}},
                                  .effective = effective,
+                                 .target_m = 2.5,
                                  .shaded_px = STORE_UNKNOWN,
                                  .triangles = STORE_UNKNOWN};
     assert_true(store_push_frame(store, &frame));
@@ -88,16 +89,16 @@ static void test_rows(void **state)
         path,
         "SELECT fovea || ' ' || head_pose || ' ' || fovea_source || quote(effective) || gaze_id || "
         "option || condition_id || phase || quote(gpu_us) || cpu_us || quote(present_ns) || shaded_px || "
-        "'/' || triangles || quote(target_x_deg) || attempt FROM frame WHERE number = 1",
+        "'/' || triangles || quote(target_x_deg) || attempt || quote(target_m) FROM frame WHERE number = 1",
         "{\"left\":[1.5,-2.0],\"right\":[1.25,-2.0]} {\"position\":[1.0,1.6,-2.0],\"orientation\":"
-        "[0.0,0.0,0.0,1.0]} gazeNULL1a2stimulusNULL150.5NULL12345/678NULL1\n");
+        "[0.0,0.0,0.0,1.0]} gazeNULL1a2stimulusNULL150.5NULL12345/678NULL1NULL\n");
     expect_text(
         path,
         "SELECT quote(fovea) || quote(head_pose) || quote(fovea_source) || effective || quote(gaze_id) || "
         "quote(option) || quote(condition_id) || phase || gpu_us || present_ns || present_estimated || late "
-        "|| quote(shaded_px) || quote(attempt) || quote(trial_id) || quote(gaze_age_us) "
+        "|| quote(shaded_px) || quote(attempt) || quote(trial_id) || quote(gaze_age_us) || target_m "
         "FROM frame WHERE number = 2",
-        "NULLNULLNULL{\"foveated\":false}NULLNULLNULLfade7.259911NULLNULLNULLNULL\n");
+        "NULLNULLNULL{\"foveated\":false}NULLNULLNULLfade7.259911NULLNULLNULLNULL2.5\n");
     expect_text(path, "SELECT option || start_ns || quote(full_start_ns) FROM exposure", "b10NULL\n");
     expect_text(path, "SELECT kind || quote(detail) FROM event", "toggleNULL\n");
     expect_text(path, "SELECT parameter || value FROM adjust_step", "epsilon0.1\n");

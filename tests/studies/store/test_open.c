@@ -39,7 +39,7 @@ static void test_new_file(void **state)
     const char *path = ((struct fixture *)*state)->path;
     struct store *store = fixture_open(path, STORE_CREATE);
     assert_int_equal(query(path, "PRAGMA application_id"), 0x46565354);
-    assert_int_equal(query(path, "PRAGMA user_version"), 1);
+    assert_int_equal(query(path, "PRAGMA user_version"), STORE_VERSION);
     char *mode = query_text(path, "PRAGMA journal_mode");
     assert_string_equal(mode, "wal\n");
     free(mode);
@@ -128,9 +128,9 @@ static void test_newer(void **state)
 {
     const char *path = ((struct fixture *)*state)->path;
     fixture_close(fixture_open(path, STORE_CREATE));
-    assert_int_equal(outsider(path, "PRAGMA user_version = 2"), 0);
+    assert_int_equal(outsider(path, "PRAGMA user_version = 3"), 0);
     for (int access = STORE_WRITE; access <= STORE_READ; access++)
-        refuse(path, (enum store_access)access, "version 2, newer than this program knows (1)");
+        refuse(path, (enum store_access)access, "version 3, newer than this program knows (2)");
     assert_int_equal(outsider(path, "PRAGMA user_version = 0"), 0);
     refuse(path, STORE_WRITE, "damaged (version 0)");
 }
@@ -360,7 +360,59 @@ static void test_ladder(void **state)
     assert_int_equal(outsider(path, "PRAGMA user_version = 4"), 0);
     assert_int_equal(climb(path, steps, &before, &error), STORE_REFUSED);
     expect_sentence(&error, "version 4, newer");
-    assert_int_equal(STORE_VERSION, 1); // a new version brings its own old file to this test
+}
+
+// --- files of each earlier version, made by the schema of then ---
+
+static void make_old(const char *path, const char *schema)
+{
+    static char sql[1 << 16];
+    FILE *file = fopen(schema, "r");
+    assert_non_null(file);
+    size_t size = fread(sql, 1, sizeof sql - 1, file);
+    fclose(file);
+    sql[size] = '\0';
+    write_file(path, "", 0);
+    assert_int_equal(outsider(path, sql), 0);
+}
+
+// An older file gets the columns of a new one, in their order, keeps its rows, and is read only once it has
+// them.
+static void test_older(void **state)
+{
+    static const char columns[] =
+        "SELECT t.name || '.' || c.cid || c.name || c.type || c.\"notnull\" FROM sqlite_schema AS t, "
+        "pragma_table_info(t.name) AS c WHERE t.type = 'table' ORDER BY t.name, c.cid";
+    struct fixture *fixture = *state;
+    char fresh[128];
+    snprintf(fresh, sizeof fresh, "%s-new", fixture->path);
+    fixture_close(fixture_open(fresh, STORE_CREATE));
+    make_old(fixture->path, SOURCE_DIR "/tests/studies/store/schema_1.sql");
+    assert_int_equal(
+        outsider(fixture->path,
+                 "PRAGMA foreign_keys = OFF; INSERT INTO protocol VALUES (1, 'p', printf('%064d', 1), 'text');"
+                 "INSERT INTO participant VALUES (1, 1, 'A', 'person', '{}');"
+                 "INSERT INTO session (id, protocol_id, participant_id, seed, status, started_at, settings)"
+                 " VALUES (1, 1, 1, 1, 'running', '2026-01-01T10:00:00Z', '{}');"
+                 "INSERT INTO segment VALUES (1, 1, '2026-01-01T10:00:00Z', 0, 'simulated', NULL, 'old', "
+                 "'start'); INSERT INTO frame (session_id, segment_id, number, phase, fade_level, start_ns,"
+                 " present_estimated, target_x_deg, triangles) VALUES (1, 1, 7, 'rest', 0, 5, 1, 2.5, 9)"),
+        0);
+    refuse(fixture->path, STORE_READ, "older version");
+    fixture_close(fixture_open(fixture->path, STORE_WRITE));
+    assert_int_equal(query(fixture->path, "PRAGMA user_version"), STORE_VERSION);
+    char *ours = query_text(fixture->path, columns), *theirs = query_text(fresh, columns);
+    assert_string_equal(ours, theirs);
+    free(ours);
+    free(theirs);
+    assert_int_equal(query(fixture->path, "SELECT count(*) FROM frame WHERE number = 7 AND triangles = 9 AND "
+                                          "target_x_deg = 2.5 AND target_m IS NULL"),
+                     1);
+    assert_int_not_equal(outsider(fixture->path, "UPDATE frame SET target_m = 0"), 0);
+    assert_int_equal(outsider(fixture->path, "UPDATE frame SET target_m = 1.5"), 0);
+    expect_sound(fixture->path);
+    fixture_close(fixture_open(fixture->path, STORE_READ));
+    unlink(fresh);
 }
 
 int main(void)
@@ -372,6 +424,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_not_a_database, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(test_another_programs, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(test_newer, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(test_older, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(test_damaged, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(test_check_finds_damage, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(test_rights, fixture_setup, fixture_teardown),
