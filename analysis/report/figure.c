@@ -1,5 +1,7 @@
 #include "analysis/report/figure.h"
 
+#include "analysis/report/html.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
@@ -130,17 +132,27 @@ static char *read_file(const char *path)
     return text;
 }
 
-// The first line of what gnuplot said that has words in it.
-static void quote_messages(const struct figure *figure, int status, char *error, size_t error_size)
+// A picture of the first line with words in it of what gnuplot said.
+static bool write_refusal(const struct figure *figure, int status)
 {
     char path[96];
     path_in(figure, "messages", path);
     char *messages = read_file(path), *line = messages ? messages + strspn(messages, " \t\n^") : NULL;
     if (line)
         line[strcspn(line, "\n")] = '\0';
-    snprintf(error, error_size, "gnuplot could not draw a figure (status %d): %s", status,
-             line && line[0] ? line : "it said nothing");
+    path_in(figure, "figure.svg", path);
+    FILE *svg = fopen(path, "w");
+    if (svg) {
+        fputs(
+            "<svg viewBox=\"0 0 640 48\" xmlns=\"http://www.w3.org/2000/svg\">\n<g font-family=\"sans-serif\" "
+            "fill=\"" FIGURE_INK "\"><text x=\"4\" y=\"18\" font-size=\"14\">This figure cannot be drawn from "
+            "its numbers.</text>\n<text x=\"4\" y=\"38\" font-size=\"11\">",
+            svg);
+        html_printf(svg, "gnuplot (status %d): %.90s", status, line && line[0] ? line : "no message");
+        fputs("</text></g>\n</svg>\n", svg);
+    }
     free(messages);
+    return svg && fclose(svg) == 0;
 }
 
 static bool run_gnuplot(struct figure *figure, char *error, size_t error_size)
@@ -169,8 +181,10 @@ static bool run_gnuplot(struct figure *figure, char *error, size_t error_size)
     if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
         snprintf(error, error_size,
                  "gnuplot is not installed, and the figures need it: apt install gnuplot-nox");
+    else if (write_refusal(figure, WIFEXITED(status) ? WEXITSTATUS(status) : -1))
+        return true;
     else
-        quote_messages(figure, WIFEXITED(status) ? WEXITSTATUS(status) : -1, error, error_size);
+        snprintf(error, error_size, "%s: a figure cannot be written: %s", figure->folder, strerror(errno));
     return false;
 }
 

@@ -33,8 +33,9 @@ static void write_shares(FILE *data, const struct threshold_cell *cell, double l
     for (size_t i = 0; i < cell->person_count; i++)
         for (size_t j = 0; j < cell->people[i].step_count; j++) {
             const struct stat_answers *step = &cell->people[i].steps[j];
-            int at = high > low ? (int)((step->level - low) / (high - low) * BINS) : 0;
-            struct bin *bin = &bins[at < BINS ? at : BINS - 1];
+            // Halves: the range of the largest numbers is infinite.
+            double place = high > low ? (step->level / 2 - low / 2) / (high / 2 - low / 2) * BINS : 0;
+            struct bin *bin = &bins[place < BINS ? (int)place : BINS - 1];
             bin->level += step->level;
             bin->right += (double)step->k;
             bin->n += (double)step->n;
@@ -55,7 +56,7 @@ static size_t write_curves(FILE *data, const struct threshold_cell *cell, double
         if (fit->status != STAT_FIT_OK)
             continue;
         for (int j = 0; j <= CURVE; j++) {
-            double x = low + (high - low) * j / CURVE;
+            double x = low * (CURVE - j) / CURVE + high * j / CURVE;
             double share = stat_psychometric(&fit->function, x);
             if (!isnan(share))
                 fprintf(data, "%.9g %.6f\n", x, 100 * share);

@@ -154,6 +154,7 @@ static void a_study_of_people(void **state)
     for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++)
         if (!strstr(page, parts[i]))
             fail_msg("the report lacks \"%s\"", parts[i]);
+    assert_null(strstr(page, "cannot be drawn"));
     free(page);
 }
 
@@ -423,22 +424,41 @@ static void failures_write_nothing(void **state)
     study_file_make("e.db", &(struct study_desc){.empty = true});
     fails(NULL, "e.db", "f.html", "e.db: the study is empty");
     assert_int_not_equal(access("f.html", F_OK), 0);
-    // A gnuplot that fails: its words are passed on, and an older report stays.
+    // A report that cannot be written whole leaves an older one.
+    FILE *file = fopen("f.html", "w");
+    fputs("older", file);
+    fclose(file);
+    fails("/nonexistent", "s.db", "f.html", "gnuplot is not installed");
+    char *older = slurp("f.html");
+    assert_string_equal(older, "older");
+    free(older);
+}
+
+// The rest of the report is written, with gnuplot's words in the figure's place.
+static void figures_that_gnuplot_refuses(void **state)
+{
+    (void)state;
+    char folder[256];
+    study_file_make("s.db", &(struct study_desc){0});
     FILE *file = fopen("gnuplot", "w");
-    fputs("#!/bin/sh\necho out of ink\nexit 3\n", file);
+    fputs("#!/bin/sh\necho '<out> of ink'\nexit 3\n", file);
     fclose(file);
     const char *chmod[] = {"/bin/chmod", "+x", "gnuplot", NULL};
     struct program_result r = program_run(chmod, NULL);
     program_free(&r);
-    file = fopen("f.html", "w");
-    fputs("older", file);
-    fclose(file);
-    char folder[256];
     assert_non_null(getcwd(folder, sizeof folder));
-    fails(folder, "s.db", "f.html", "gnuplot could not draw a figure (status 3): out of ink");
-    char *older = slurp("f.html");
-    assert_string_equal(older, "older");
-    free(older);
+    const char *argv[] = {fovstats, "report", "s.db", "-o", "f.html", NULL};
+    r = program_run(argv, folder);
+    assert_int_equal(r.code, 0);
+    program_free(&r);
+    unlink("gnuplot");
+    char *page = slurp("f.html");
+    static const char *const parts[] = {"This figure cannot be drawn from its numbers.",
+                                        "gnuplot (status 3): &lt;out&gt; of ink", "</html>"};
+    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++)
+        if (!strstr(page, parts[i]))
+            fail_msg("the report lacks \"%s\"", parts[i]);
+    free(page);
 }
 
 static void a_figure_becomes_part_of_a_page(void **state)
@@ -481,6 +501,7 @@ int main(void)
         cmocka_unit_test(separation_is_said),
         cmocka_unit_test(what_is_missing_is_said),
         cmocka_unit_test(failures_write_nothing),
+        cmocka_unit_test(figures_that_gnuplot_refuses),
         cmocka_unit_test(a_figure_becomes_part_of_a_page),
     };
     return cmocka_run_group_tests(tests, program_enter_folder, program_leave_folder);

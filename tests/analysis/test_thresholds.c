@@ -353,6 +353,18 @@ static void the_report_has_them(void **state)
             fail_msg("the report lacks \"%s\"", parts[i]);
 }
 
+// Levels whose range is no number: tables and the rest are written, a figure may be a sentence.
+static void levels_at_the_end_of_numbers(void **state)
+{
+    (void)state;
+    staircase_file_make("h.db");
+    study_file_sql("h.db", "UPDATE staircase_step SET level = CASE WHEN level < 4 THEN -1e308 ELSE 1e308 END");
+    struct program_result r = FOVSTATS("report", "h.db", "-o", "h.html");
+    if (r.code != 0)
+        fail_msg("exit %d: %s", r.code, r.err);
+    program_free(&r);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -368,6 +380,7 @@ int main(void)
         cmocka_unit_test(options_are_heeded),
         cmocka_unit_test(jod_of_a_star),
         cmocka_unit_test(the_report_has_them),
+        cmocka_unit_test(levels_at_the_end_of_numbers),
     };
     return cmocka_run_group_tests(tests, program_enter_folder, program_leave_folder);
 }
