@@ -19,6 +19,12 @@ static void methods_one_each(const struct report *r)
 
 static void methods_several(const struct report *r)
 {
+    bool fitted = false;
+    for (size_t i = 0; i < r->choices.cell_count; i++) {
+        const struct choice_cell *cell = &r->choices.cells[i];
+        fitted = fitted || (cell->several && (cell->mixed.state == STAT_MIXED_FITTED ||
+                                              cell->mixed.state == STAT_MIXED_SD_ZERO));
+    }
     html_printf(
         r->out,
         "%s the people, not the answers, were taken as independent: the sum over people of answers for the "
@@ -26,11 +32,13 @@ static void methods_several(const struct report *r)
         "option beyond half of their answers was compared with all ways to flip the people\u2019s signs (exact "
         "two-sided sign-flip test). The share is the mean of the people\u2019s shares, with its t interval; "
         "test "
-        "and interval can differ at the edge. A logistic mixed model with a random intercept per person "
-        "(maximum likelihood, adaptive quadrature, intercept referred to t with N \u2212 1 degrees of freedom) "
-        "stands beside it. ",
+        "and interval can differ at the edge. ",
         r->choices.one_each ? "In cells with several answers of a person"
                             : "As people answered several times per cell,");
+    if (fitted)
+        fputs("A logistic mixed model with a random intercept per person (maximum likelihood, adaptive "
+              "quadrature, intercept referred to t with N \u2212 1 degrees of freedom) stands beside it. ",
+              r->out);
 }
 
 void report_choices_methods(const struct report *r)
@@ -39,11 +47,10 @@ void report_choices_methods(const struct report *r)
         methods_one_each(r);
     if (r->choices.several)
         methods_several(r);
-    if (r->choices.contrast_count)
-        fputs("Levels of a factor were compared by a t-test of each person\u2019s difference of shares. ",
-              r->out);
-    html_printf(r->out, "Cells were never joined. Holm\u2019s p is adjusted for all %zu cells with an answer. ",
-                r->choices.tested);
+    if (r->choices.tested > 1)
+        html_printf(r->out,
+                    "Each cell was tested by itself; Holm\u2019s p is adjusted for all %zu cells with a test. ",
+                    r->choices.tested);
 }
 
 static void share_interval(FILE *out, double share, struct stat_interval ci)

@@ -129,20 +129,56 @@ static void family(const struct report *r)
     fputs(tests ? ". " : "", r->out);
 }
 
+// Where the protocol planned to join cells, and there was something to join.
+static void joined_methods(const struct report *r)
+{
+    static const char *const joining[] = {"scene", "factor", "study"};
+    size_t count = 0;
+    for (size_t i = 0; i < sizeof joining / sizeof joining[0]; i++) {
+        bool used = false;
+        for (size_t k = 0; k < r->planned.row_count; k++)
+            used = used || (r->planned.rows[k].people > 0 &&
+                            plan_is(&r->plans.items[r->planned.rows[k].plan], NULL, NULL, joining[i]));
+        if (used)
+            html_printf(r->out, "%s per %s", count++ ? " and" : "Planned analyses", joining[i]);
+    }
+    if (count)
+        fputs(" join cells: each person\u2019s answers in them are taken together first, so that people are "
+              "what is counted. ",
+              r->out);
+}
+
+// By which tests equality was tested.
+static const char *equality_tests(const struct report *r)
+{
+    bool exact = false, t = false;
+    for (size_t i = 0; i < r->planned.row_count; i++) {
+        const struct planned_row *row = &r->planned.rows[i];
+        bool tested = !isnan(row->margin) && !isnan(row->p_value);
+        exact = exact || (tested && strstr(row->test, "binomial"));
+        t = t || (tested && !strstr(row->test, "binomial"));
+    }
+    return !t       ? "exact binomial tests"
+           : !exact ? "t-tests of the people\u2019s shares"
+                    : "tests: exact binomial ones of one answer each, t-tests of the people\u2019s shares else";
+}
+
 void report_planned_methods(const struct report *r)
 {
+    joined_methods(r);
     size_t tests = r->planned.tested, equality = planned_equality(&r->planned);
     if (tests == 1)
         fputs("One test was planned. ", r->out);
     else if (tests)
         html_printf(r->out, "The %zu planned tests are one family, with Holm\u2019s adjustment. ", tests);
     if (equality)
-        html_printf(r->out,
-                    "Equality of preferences within the protocol\u2019s margin was tested by two one-sided "
-                    "tests: exact binomial of one answer each, t-tests of the people\u2019s shares else. %s in "
-                    "the family, where the two tests of a preference count once, as their hypotheses exclude "
-                    "each other (Shaffer 1986); equality is claimed only where Holm\u2019s p is at most %.4g. ",
-                    equality == 1 ? "That test is" : "These tests are", 1 - r->conf);
+        html_printf(
+            r->out,
+            "Equality of preferences within the protocol\u2019s margin was tested by two one-sided %s. "
+            "%s in the family, where the two tests of a preference count once, as their hypotheses "
+            "exclude each other (Shaffer 1986); equality is claimed only where Holm\u2019s p is at most "
+            "%.4g. ",
+            equality_tests(r), equality == 1 ? "That test is" : "These tests are", 1 - r->conf);
 }
 
 void report_planned(const struct report *r)

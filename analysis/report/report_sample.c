@@ -1,4 +1,4 @@
-// Study and sample, and the methods paragraph.
+// Study and sample.
 #include "analysis/report/facts.h"
 #include "analysis/report/html.h"
 #include "analysis/report/sections.h"
@@ -163,55 +163,4 @@ void report_sample(const struct report *r)
     if (facts_differing(s, differing, sizeof differing))
         fprintf(r->out, "<p class=\"note\">The sessions differ in: %s. The numbers below pool them.</p>\n",
                 differing);
-}
-
-void report_methods(const struct report *r)
-{
-    report_heading(r, "Methods");
-    fputs("<p>", r->out);
-    if (r->choices.cell_count)
-        report_choices_methods(r);
-    if (r->factors.count)
-        fputs("Levels of a factor were compared in cells that are otherwise the same, between or within "
-              "people as their trials were planned: between people by Fisher\u2019s exact test of one "
-              "answer each, else by exchanging whole people; within people by McNemar\u2019s exact test "
-              "or Cochran\u2019s Q of one answer each, else by the t-test of each person\u2019s "
-              "difference. The interval of a difference within people of one answer each is Fay and "
-              "Lumbard\u2019s (2021), which agrees with McNemar\u2019s exact test. ",
-              r->out);
-    if (r->ratings.question_count)
-        fputs(
-            "First ratings were compared between the two order groups by Welch\u2019s t-test, and the second "
-            "with the "
-            "first rating within each group by a paired t-test and by Wilcoxon\u2019s signed-rank test (exact "
-            "with ties, zeros dropped). ",
-            r->out);
-    if (r->ratings.options.count)
-        fputs(
-            "Ratings of both options of a trial were compared within people by paired t-tests with Holm\u2019s "
-            "adjustment over cells, and by Wilcoxon\u2019s signed-rank test. ",
-            r->out);
-    if (r->ratings.factorials.count)
-        fputs(
-            "Ratings over crossed factors were averaged per person and cell and analysed by a full factorial "
-            "analysis of variance within participants; sphericity is not tested but always corrected for, and "
-            "Greenhouse\u2013Geisser\u2019s p decides. Levels of factors with an effect were compared by "
-            "paired "
-            "t-tests with Holm\u2019s adjustment. People without a rating in every cell are left out. ",
-            r->out);
-    if (ratings_any(&r->ratings))
-        fputs("d is Cohen\u2019s (d<sub>z</sub>: in the SD of the differences), with exact intervals by the "
-              "noncentral t distribution. ",
-              r->out);
-    report_planned_methods(r);
-    html_printf(r->out,
-                "Intervals cover %g\u00a0%%. Where Holm is not named, p-values are not corrected for "
-                "the number of tests. ",
-                100 * r->conf);
-    if (r->sample->simulated)
-        fputs("<strong>All sessions are simulated:</strong> the answers come from a model that reads image "
-              "errors, and say "
-              "nothing about people.",
-              r->out);
-    fputs("</p>\n", r->out);
 }
