@@ -51,6 +51,22 @@ static void difference_row(struct planned_row *row, const struct stat_person *pe
                  least);
 }
 
+// Why there is no test of equality over people: without spread there is no t. A share of everybody that lies
+// outside the margin is no equality all the same.
+static void equality_without_test(struct planned_row *row)
+{
+    if (row->people < 2)
+        snprintf(row->note, sizeof row->note, "equality is not estimable: one person alone");
+    else if (fabs(row->estimate - 0.5) >= row->margin)
+        snprintf(
+            row->note, sizeof row->note,
+            "equality is not shown: all people have the same share, so that there is no t-test, and it lies "
+            "outside the margin");
+    else
+        snprintf(row->note, sizeof row->note,
+                 "equality is not estimable: all people have the same share, so that there is no t-test");
+}
+
 static void equality_row(struct planned_row *row, const struct stat_person *people, size_t count, double alpha,
                          double margin)
 {
@@ -71,8 +87,7 @@ static void equality_row(struct planned_row *row, const struct stat_person *peop
     row->low = e.ci.low;
     row->high = e.ci.high;
     if (isnan(e.p_value))
-        snprintf(row->note, sizeof row->note,
-                 "equality is not estimable: one person alone, or all people have the same share");
+        equality_without_test(row);
     else
         snprintf(row->test, sizeof row->test, "two one-sided %s",
                  several ? "t of the people\u2019s shares" : "exact binomials");

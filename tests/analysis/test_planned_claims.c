@@ -75,6 +75,41 @@ static void people_are_tested_for_equality_too(void **state)
     planned_study_free(&l);
 }
 
+// Without spread there is no t-test; but what everybody chose the same way is not called open.
+static void shares_that_are_all_the_same(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *chosen, *note; // by the trial's slot of the test option
+    } cases[] = {{"iif(test_slot = 'a', 'b', 'a')", "equality is not shown: all people have the same share"},
+                 {"test_slot", "equality is not shown: all people have the same share"},
+                 {"iif((ordinal % 2 = 0) = (test_slot = 'a'), 'a', 'b')",
+                  "equality is not estimable: all people have the same share"}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct planned_study l;
+        char sql[512];
+        study_file_make("s.db", &(struct study_desc){.several = true});
+        study_file_sql("s.db", "DELETE FROM choice WHERE trial_id < 1000; DELETE FROM rating; "
+                               "DELETE FROM frame; DELETE FROM trial WHERE id < 1000");
+        snprintf(sql, sizeof sql, "UPDATE choice SET chosen = (SELECT %s FROM trial WHERE trial.id = trial_id)",
+                 cases[i].chosen);
+        study_file_sql("s.db", sql);
+        planned_study_plan(PLAN("binomial", "choice", "cell", ",\"margin\":0.1"));
+        planned_study_load(&l);
+        assert_int_equal(l.planned.row_count, 2);
+        assert_int_equal(l.planned.rows[1].people, 22);
+        assert_true(isnan(l.planned.rows[1].p_value));
+        if (strncmp(l.planned.rows[1].note, cases[i].note, strlen(cases[i].note)) != 0)
+            fail_msg("case %zu: %s", i, l.planned.rows[1].note);
+        planned_study_free(&l);
+    }
+    study_file_sql("s.db", "DELETE FROM choice WHERE trial_id > 1018; DELETE FROM trial WHERE id > 1018");
+    struct planned_study l;
+    planned_study_load(&l);
+    assert_string_equal(l.planned.rows[1].note, "equality is not estimable: one person alone");
+    planned_study_free(&l);
+}
+
 // Differences of ratings: second minus first, test minus reference, however the plan joins them.
 static void differences_say_what_is_subtracted_from_what(void **state)
 {
@@ -175,6 +210,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(equality_is_shown_by_the_adjusted_p_alone),
         cmocka_unit_test(people_are_tested_for_equality_too),
+        cmocka_unit_test(shares_that_are_all_the_same),
         cmocka_unit_test(differences_say_what_is_subtracted_from_what),
         cmocka_unit_test(options_of_a_trial_are_named),
         cmocka_unit_test(the_command_says_the_same),
