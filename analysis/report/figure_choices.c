@@ -10,6 +10,7 @@
 
 enum { CROWDED = 18, NARROW_CROWDED = 9 }; // bars beyond which numbers in them no longer fit
 enum { FONT_PX = 15, NARROW_FONT_PX = 12 };
+enum { UNDER = 12 }; // of the upright axis: the room that two lines of numbers under the bars take
 
 static const double group_gap = 0.5, number_gap = 0.1; // in bar slots, between groups; where bars bear numbers
 
@@ -52,7 +53,10 @@ static void write_bar(FILE *data, const struct choice_cell *cell, size_t number,
                     0, 100);
     snprintf(word, sizeof word, narrow ? "%.0f" : "%.0f %%", 100 * cell->estimate);
     figure_word(data, word);
-    snprintf(word, sizeof word, "%" PRId64 "/%" PRId64, cell->chosen, cell->n);
+    if (cell->several) // all answers together have another share than their people's mean
+        snprintf(word, sizeof word, "n %zu", stat_people_sum(cell->counts, cell->people).people);
+    else
+        snprintf(word, sizeof word, "%" PRId64 "/%" PRId64, cell->chosen, cell->n);
     fputc(' ', data);
     figure_word(data, word);
     if (number)
@@ -191,7 +195,9 @@ bool figure_choices(const struct choices *choices, const struct figure_desc *des
     bool named, factor_named;
     double last = write_data(figure.data, choices, desc->narrow, &named, &factor_named);
     bool numbers = choices->cell_count <= (desc->narrow ? NARROW_CROWDED : CROWDED);
-    double group_y = -14, factor_y = named ? -22 : -14;
+    // Lines of intervals would strike numbers in the bars through: those stand under them then.
+    bool under = numbers && choices->several;
+    double below = under ? UNDER : 0, group_y = -14 - below, factor_y = group_y - (named ? 8 : 0);
     fprintf(
         figure.script,
         "set xrange [-0.6:%.3f]\nset yrange [%d:101]\nunset xtics\nset label '%s' " FIGURE_UPRIGHT "\n"
@@ -201,7 +207,8 @@ bool figure_choices(const struct choices *choices, const struct figure_desc *des
         "lc rgb (y == 0 ? '" FIGURE_INK "' : '#dfe2e8') }\n"
         "set arrow from graph 0, first 50 to graph 1, first 50 nohead front lw 1.2 dt (6,4) lc rgb '" FIGURE_INK
         "'\n",
-        last + 0.6, (named ? -21 : -10) - (factor_named ? 8 : 0), figure_choices_what(choices), 6);
+        last + 0.6, (named ? -21 : -10) - (factor_named ? 8 : 0) - (under ? UNDER : 0),
+        figure_choices_what(choices), 6);
     fprintf(figure.script,
             "plot %s'data' index 0 using 1:2:(%s) with boxes fs solid noborder fc rgb '" FIGURE_ORANGE "'%s%s",
             choices->one_each ? regions : "", figure_choices_numbered(choices) ? "0.8" : "0.6",
@@ -214,9 +221,12 @@ bool figure_choices(const struct choices *choices, const struct figure_desc *des
         fprintf(figure.script, ", '' index 2 using 1:(%g):2 with labels tc rgb '" FIGURE_INK "'", factor_y);
     if (numbers)
         fprintf(figure.script,
-                ", '' index 0 using 1:(%s):11 with labels tc rgb '" FIGURE_INK "'"
-                ", '' index 0 using 1:(4):12 with labels font ',%d' tc rgb '" FIGURE_INK "'",
-                desc->narrow ? "11" : "10", font - 2);
+                ", '' index 0 using 1:(%d):11 with labels tc rgb '" FIGURE_INK "'"
+                ", '' index 0 using 1:(%d):12 with labels font ',%d' tc rgb '" FIGURE_INK "'",
+                under          ? -11
+                : desc->narrow ? 11
+                               : 10,
+                under ? -17 : 4, font - 2);
     fputc('\n', figure.script);
     return figure_end(&figure, desc->text, out_svg, error, error_size);
 }

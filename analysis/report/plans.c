@@ -53,6 +53,18 @@ bool plans_load(struct plans *out, struct sample *sample)
     return ok;
 }
 
+// Titles and plans came into session.settings together: sessions with a title have the plans there were.
+const char *plans_none(const struct sample *sample)
+{
+    bool kept = true;
+    for (size_t i = 0; i < sample->session_count; i++)
+        kept = kept && (sample->sessions[i].excluded || sample->sessions[i].title[0]);
+    return kept ? "the protocol planned no analysis"
+                : "the protocol planned no analysis, or the sessions were recorded by an early build of "
+                  "fovstudy, "
+                  "which did not keep what was planned";
+}
+
 void plans_free(struct plans *plans)
 {
     free(plans->items);

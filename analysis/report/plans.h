@@ -20,6 +20,8 @@ struct plans {
 // False where memory ran out.
 bool plans_load(struct plans *out, struct sample *sample);
 void plans_free(struct plans *plans);
+// Why there is no plan, a sentence without a full stop.
+const char *plans_none(const struct sample *sample);
 bool plan_is(const struct plan *plan, const char *method, const char *of, const char *per); // NULL: any
 
 // The margin that cells are tested with: of the binomial test of choices per cell, else of any other. NaN where

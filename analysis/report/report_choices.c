@@ -1,4 +1,4 @@
-// Summary, choices and toggles.
+// Choices and toggles.
 #include "analysis/report/figures.h"
 #include "analysis/report/html.h"
 #include "analysis/report/level.h"
@@ -19,87 +19,14 @@ void report_cell_words(const struct choice_cell *cell, char out[256])
              cell->right && cell->level_count ? ", right answers" : "");
 }
 
-// 1: the test option, or right answers; -1: the other; 0: neither, or people and their mean share disagree.
-static int direction(const struct choice_cell *cell)
-{
-    if (!report_outside(cell))
-        return 0;
-    if (!cell->several)
-        return 2 * cell->chosen > cell->n ? 1 : -1;
-    int people = (cell->flip.statistic > 0) - (cell->flip.statistic < 0),
-        share = (cell->estimate > 0.5) - (cell->estimate < 0.5);
-    return people == share ? people : 0;
-}
-
 static const char *direction_words(const struct choice_cell *cell)
 {
     static const char *const words[2][3] = {
         {"reference", "no clear preference", "test"},
         {"wrong more often", "no better than guessing", "right more often"}};
-    if (report_outside(cell) && direction(cell) == 0)
+    if (report_outside(cell) && report_direction(cell) == 0)
         return "p and mean share disagree";
-    return words[cell->right][direction(cell) + 1];
-}
-
-static void list_outside(const struct report *r, bool right, int where)
-{
-    bool first = true;
-    for (size_t i = 0; i < r->choices.cell_count; i++) {
-        const struct choice_cell *cell = &r->choices.cells[i];
-        if (cell->right != right || direction(cell) != where)
-            continue;
-        char words[256];
-        report_cell_words(cell, words);
-        html_printf(r->out, "%s%s (%" PRId64 " of %" PRId64 ")", first ? "" : "; ", words, cell->chosen,
-                    cell->n);
-        first = false;
-    }
-}
-
-void report_summary(const struct report *r)
-{
-    int64_t cells = 0, outside = 0, holm = 0, of[2][3] = {{0}};
-    for (size_t i = 0; i < r->choices.cell_count; i++) {
-        const struct choice_cell *cell = &r->choices.cells[i];
-        cells += cell->n > 0;
-        outside += report_outside(cell);
-        of[cell->right][direction(cell) + 1]++;
-        holm += cell->holm <= 1 - r->conf;
-    }
-    if (cells == 0)
-        return;
-    fputs("<p class=\"lead\">", r->out);
-    const char *is = outside == 1 ? "lies" : "lie";
-    if (r->choices.several)
-        html_printf(r->out, "Of %" PRId64 " cells, %" PRId64 " %s p \u2264 %.4g", cells, outside,
-                    outside == 1 ? "has" : "have", 1 - r->conf);
-    else
-        html_printf(r->out,
-                    "Of %" PRId64 " cells, %" PRId64 " %s outside the %g\u00a0%% region of the null hypothesis",
-                    cells, outside, is, 100 * r->conf);
-    static const struct {
-        bool right;
-        int where;
-        const char *words;
-    } lists[] = {{false, -1, "; the reference was preferred for "},
-                 {false, 1, "; the test option was preferred for "},
-                 {true, 1, "; answers were right more often than by guessing for "},
-                 {true, -1, "; answers were wrong more often than by guessing for "}};
-    for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++)
-        if (of[lists[i].right][lists[i].where + 1]) {
-            fputs(lists[i].words, r->out);
-            list_outside(r, lists[i].right, lists[i].where);
-        }
-    fputs(". ", r->out);
-    if (cells > outside)
-        fputs("The other cells show no clear preference, which does not show that the options look the same. ",
-              r->out);
-    fputs("With Holm\u2019s correction for the number of cells, ", r->out);
-    if (holm == 0)
-        fputs("none remains.</p>\n", r->out);
-    else
-        html_printf(r->out, "%" PRId64 " of them %s.", holm, holm == 1 ? "remains" : "remain");
-    fputs(holm ? "</p>\n" : "", r->out);
+    return words[cell->right][report_direction(cell) + 1];
 }
 
 static void choices_caption(const struct report *r, char *out, size_t size)
@@ -122,8 +49,12 @@ static void choices_caption(const struct report *r, char *out, size_t size)
             100 * r->conf);
     snprintf(out, size,
              "<span class=\"key\" style=\"background:#e8912d\"></span> Percent of %s. %s%s"
-             "Dashed: 50&nbsp;%%. In the bars: percent, and how many of all answers.%s",
+             "Dashed: 50&nbsp;%%. %s%s",
              figure_choices_what(&r->choices), region, interval,
+             !r->choices.several ? "In the bars: percent, and how many of all answers."
+             : r->choices.one_each
+                 ? "Under the bars: percent, and how many of all answers, or n, the people with several."
+                 : "Under the bars: percent, and n, the people.",
              !figure_choices_numbered(&r->choices)
                  ? ""
                  : " Numbers under the bars are those of the table\u2019s rows.");
@@ -144,7 +75,7 @@ static void choice_row(const struct report *r, const struct choice_cell *cell, s
     html_cell(out, "td", "%" PRId64, cell->chosen);
     html_cell(out, "td", "%" PRId64, cell->n);
     if (r->choices.several)
-        html_cell(out, "td", "%zu", cell->people);
+        html_cell(out, "td", "%zu", stat_people_sum(cell->counts, cell->people).people);
     if (cell->n) {
         html_cell(out, "td class=\"share\"", "%.1f\u00a0%%", 100 * cell->estimate);
         if (isnan(cell->ci.low))
@@ -180,13 +111,13 @@ static void choices_table(const struct report *r)
             : c->one_each ? "exact two-sided binomial or sign-flip test"
                           : "exact two-sided sign-flip test");
     fputs(numbered ? "<th scope=\"col\">no.</th>" : "", out);
-    fputs("<th scope=\"col\" class=\"word\">cell</th><th scope=\"col\">chosen</th><th scope=\"col\">n</th>",
+    fputs(c->several
+              ? "<th scope=\"col\" class=\"word\">cell</th><th scope=\"col\">chosen (all)</th><th "
+                "scope=\"col\">n (all)</th><th scope=\"col\">people</th><th scope=\"col\">mean share</th>"
+              : "<th scope=\"col\" class=\"word\">cell</th><th scope=\"col\">chosen</th><th "
+                "scope=\"col\">n</th><th scope=\"col\">share</th>",
           out);
-    fputs(c->several ? "<th scope=\"col\">people</th>" : "", out);
-    fprintf(out,
-            "<th scope=\"col\">share</th><th scope=\"col\">%g&nbsp;%% interval</th><th scope=\"col\">null "
-            "region</th>",
-            100 * c->conf);
+    fprintf(out, "<th scope=\"col\">%g&nbsp;%% interval</th><th scope=\"col\">null region</th>", 100 * c->conf);
     fputs(c->several ? "<th scope=\"col\" class=\"word\">tested by</th>" : "", out);
     fputs("<th scope=\"col\">p</th><th scope=\"col\">p (Holm)</th><th scope=\"col\" "
           "class=\"word\">result</th></tr></thead>\n<tbody>\n",
@@ -199,9 +130,16 @@ static void choices_table(const struct report *r)
 static void choices_notes(const struct report *r)
 {
     const struct choices *c = &r->choices;
+    bool first = true;
+    if (c->several)
+        fputs("<p>Where somebody answered several times, the mean share is that over people of each one\u2019s "
+              "own "
+              "share, every person counting the same; it is not chosen of n where some answered more than "
+              "others. "
+              "People are those with an answer that is part of n.</p>\n",
+              r->out);
     if (c->equal == 0)
         return;
-    bool first = true;
     fputs("<p>Answers \u201cequal\u201d are not part of n: ", r->out);
     for (size_t i = 0; i < c->cell_count; i++) {
         char words[256];
@@ -292,7 +230,8 @@ void report_toggles(const struct report *r)
                     c->toggles.sd, c->toggles.n);
     int64_t decided = c->answers - c->equal;
     if (decided) {
-        html_printf(r->out, "Over all %" PRId64 " answers for an option: ", decided);
+        html_printf(r->out, "Of all %" PRId64 " %s for an option, counted as they are: ", decided,
+                    decided == 1 ? "answer" : "answers");
         if (c->first_known)
             html_printf(r->out, "the one shown first was chosen in %" PRId64 " (%.0f\u00a0%%), ",
                         c->chosen_first, 100 * (double)c->chosen_first / (double)c->first_known);
@@ -301,6 +240,9 @@ void report_toggles(const struct report *r)
         if (c->first_known < decided)
             html_printf(r->out, " Of %" PRId64 " it is not known which was shown first.",
                         decided - c->first_known);
+        fputs(" These are counts of answers; whether side or order has an effect is tested below, where each "
+              "person gives one value that a preference does not move, so that percentages there differ.",
+              r->out);
     }
     fputs("</p>\n", r->out);
     toggles_table(r);

@@ -101,6 +101,10 @@ void report_effects(const struct report *r)
                     "p (Holm) is adjusted for the family of the %zu %s. A large p does not show that there is "
                     "no effect. ",
                     r->effects.tested, r->effects.tested == 1 ? "check that has a p" : "checks that have a p");
+    fputs("Shares of sides and of orders are balanced within each person over trials in which the test option "
+          "had that side or place and trials in which it had not, then averaged over people: they are not the "
+          "counts of all answers in section \u201cToggles before answering\u201d. ",
+          out);
     fputs("What was on screen last or longest may be so because it was preferred.", out);
     fputs(
         "</p>\n<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"Effects on choices that are no "

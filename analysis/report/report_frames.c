@@ -123,9 +123,14 @@ void report_frames(const struct report *r)
               "the machine.",
               out);
     fputs("</p>\n", out);
-    report_figure(r, &r->frames_figure,
-                  "Time per stimulus frame on the GPU (on the CPU where no GPU time is known): dot and number, "
-                  "median; dark line to the 95th, pale line to the 99th percentile.");
+    char caption[512];
+    snprintf(
+        caption, sizeof caption,
+        "Time per stimulus frame on the GPU (on the CPU where no GPU time is known): dot and number, median; "
+        "dark line to the 95th, pale line to the 99th percentile. Over all frames of an option, whatever the "
+        "scene: options that were shown in different scenes are not compared by it%s",
+        r->frames_pairs.count ? ", but by the last table of this section, within trials." : ".");
+    report_figure(r, &r->frames_figure, caption);
     fputs("<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"Frame "
           "times\"><table>\n<caption>Times in milliseconds; "
           "percentiles as R\u2019s quantile() has them (type 7)</caption>\n<thead><tr><th scope=\"col\" "

@@ -186,7 +186,7 @@ void report_planned(const struct report *r)
     FILE *out = r->out;
     report_heading(r, "Planned analyses");
     if (r->plans.count == 0) {
-        fputs("<p>The protocol planned none, or an earlier version recorded the sessions.</p>\n", out);
+        fprintf(out, "<p>None: %s.</p>\n", plans_none(r->sample));
         return;
     }
     planned_table(r);

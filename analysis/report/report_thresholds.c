@@ -219,7 +219,7 @@ static void report_staircases(const struct report *r)
     }
     if (t->excluded + t->not_done)
         fprintf(r->out,
-                "<p>Left out of the fits: %" PRId64 " steps of excluded trials, %" PRId64
+                "<p>Steps left out of the fits: %" PRId64 " of excluded trials, %" PRId64
                 " of trials that are not done.</p>\n",
                 t->excluded, t->not_done);
     if (t->not_finite)
@@ -315,8 +315,9 @@ static void report_jod(const struct report *r)
     for (size_t i = 0; i < r->jod.block_count; i++) {
         const struct jod_block *b = &r->jod.blocks[i];
         char caption[256];
-        snprintf(caption, sizeof caption, "Block \u201c%.100s\u201d: %zu comparisons by %" PRId64 " people",
-                 b->block, b->answer_count, b->persons);
+        snprintf(caption, sizeof caption, "Block \u201c%.100s\u201d: %zu %s by %" PRId64 " %s", b->block,
+                 b->answer_count, b->answer_count == 1 ? "comparison" : "comparisons", b->persons,
+                 b->persons == 1 ? "person" : "people");
         open_table(out, caption, caption);
         headings(out, names);
         open = jod_rows(r, b) || open;

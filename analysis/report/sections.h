@@ -77,6 +77,8 @@ void report_equivalence(const struct report *r);    // by the protocol's margin
 void report_choice_three(const struct report *r);   // where "equal" was an answer
 void report_choice_factors(const struct report *r); // levels compared, but for several answers within people
 void report_people(const struct report *r);         // cells with several answers per person
+// 1: the test option, or right answers; -1: the other; 0: neither, or people and their mean share disagree.
+int report_direction(const struct choice_cell *cell);
 void report_cell_words(const struct choice_cell *cell, char out[256]);
 void report_toggles(const struct report *r);
 void report_ratings(const struct report *r);

@@ -4,6 +4,7 @@
 #include "analysis/tools/study_arguments.h"
 
 #include <stdio.h>
+#include <string.h>
 
 static const char help[] =
     "usage: fovstats anova DB... [--conf C] [--simulated] [--protocol N] [--json]\n"
@@ -44,19 +45,30 @@ static bool print_text(const struct sample *sample, const struct ratings *r)
     return ok;
 }
 
-static int finish(const struct command *command, const struct sample *sample, const struct ratings *r)
+static size_t analysed(const struct ratings *r)
 {
-    size_t analysed = 0;
+    size_t count = 0;
     for (size_t i = 0; i < r->factorials.count; i++)
-        analysed += r->factorials.items[i].refusal[0] == '\0';
+        count += r->factorials.items[i].refusal[0] == '\0';
+    return count;
+}
+
+// One sentence: why there is not a single analysis.
+static int refuse(const struct command *command, const struct sample *sample, const struct ratings *r)
+{
     const char *path = store_reader_path(sample->files[0]);
-    if (r->factorials.count == 0)
+    char why[512], more[64] = "";
+    size_t count = r->factorials.count;
+    if (count == 0)
         return command_fail(command, EXIT_FAILED,
                             "%s: no ratings over factors were recorded that count; see fovstats ratings", path);
-    if (analysed == 0)
-        return command_fail(command, EXIT_FAILED,
-                            "%s: no analysis of variance is possible; what was recorded says why", path);
-    return command_finish(command);
+    factorial_refusal(&r->factorials.items[0], why);
+    why[0] = 'n';
+    why[strlen(why) - 1] = '\0'; // no sentence of its own
+    if (count > 1)
+        snprintf(more, sizeof more, "; nor of %zu more, see fovstats ratings", count - 1);
+    return command_fail(command, EXIT_FAILED, "%s: %s, block %s: %s%s", path, r->factorials.items[0].question,
+                        r->factorials.items[0].block, why, more);
 }
 
 static int analyse(const struct command *command, const struct study_arguments *arguments,
@@ -67,13 +79,15 @@ static int analyse(const struct command *command, const struct study_arguments *
     struct ratings r;
     if (!ratings_load(&r, sample, arguments->conf, false, error, sizeof error)) {
         code = command_fail(command, EXIT_FAILED, "%s", error);
+    } else if (analysed(&r) == 0) {
+        code = refuse(command, sample, &r);
     } else {
         bool ok = true;
-        if (r.factorials.count && arguments->json)
+        if (arguments->json)
             print_json(sample, &r);
-        else if (r.factorials.count)
+        else
             ok = print_text(sample, &r);
-        code = ok ? finish(command, sample, &r) : command_fail(command, EXIT_FAILED, "not enough memory");
+        code = ok ? command_finish(command) : command_fail(command, EXIT_FAILED, "not enough memory");
     }
     ratings_free(&r);
     return code;

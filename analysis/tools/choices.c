@@ -86,7 +86,7 @@ static void cell_row(struct table *t, const struct choice_cell *cell)
     table_cell(t, "%s", cell->label);
     table_cell(t, "%" PRId64, cell->chosen);
     table_cell(t, "%" PRId64, cell->n);
-    table_cell(t, "%zu", cell->people);
+    table_cell(t, "%zu", stat_people_sum(cell->counts, cell->people).people);
     table_cell(t, "%.1f", 100 * cell->estimate);
     table_cell(t, "%s", choice_method_word(cell->method));
     choices_p_cell(t, cell->p_value);
@@ -121,6 +121,10 @@ static bool print_text(const struct sample *sample, const struct choices *c, con
         "\nchosen: answers for the test option, tested against %g, %s; Holm p: adjusted for %zu %s; reaction: "
         "median.\n",
         c->p0, alternative_words[c->alternative], c->tested, c->tested == 1 ? "cell" : "cells");
+    if (c->several)
+        puts("%: where somebody answered several times, the mean of the people's shares, each counting the "
+             "same; "
+             "chosen and n are of all\nanswers together.");
     if (c->toggles.n > 1)
         printf("Toggles over all answers: M %.2f, SD %.2f.\n", c->toggles.mean, c->toggles.sd);
     for (size_t i = 0; equal && i < c->cell_count; i++)
@@ -163,7 +167,7 @@ static void cell_json(struct json *json, const struct sample *sample, const stru
     json_text(json, "method", choice_method_word(cell->method));
     json_number(json, "p_holm", cell->holm);
     json_integer(json, "equal", cell->equal);
-    json_integer(json, "participants", (int64_t)cell->people);
+    json_integer(json, "participants", (int64_t)stat_people_sum(cell->counts, cell->people).people);
     json_bool(json, "several_answers", cell->several);
     json_number(json, "overdispersion", cell->overdispersion);
     if (cell->several)

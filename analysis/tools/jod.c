@@ -36,8 +36,9 @@ static void note_cell(struct table *t, const struct stat_jod *s, size_t replicat
     size_t used = (size_t)snprintf(note, sizeof note, "%s", jod_reason(s));
     for (size_t i = 0; s->status == STAT_JOD_OK && i < sizeof parts / sizeof parts[0]; i++)
         if (parts[i].count)
-            used += (size_t)snprintf(note + used, sizeof note - used, "%s%s in %zu of %zu replicates",
-                                     used ? ", " : "", parts[i].what, parts[i].count, replicates);
+            used += (size_t)snprintf(note + used, sizeof note - used, "%s%s in %zu of %zu %s", used ? ", " : "",
+                                     parts[i].what, parts[i].count, replicates,
+                                     replicates == 1 ? "replicate" : "replicates");
     table_cell(t, "%s", note);
 }
 
@@ -62,8 +63,9 @@ static bool print_block(const struct sample *sample, const struct jod *j, const 
         table_cell(&t, "%s", interval[0] ? interval : "-");
         note_cell(&t, s, j->replicates);
     }
-    printf("%s: %zu comparisons by %" PRId64 " people%s\n", b->block, b->answer_count, b->persons,
-           b->persons < 2 ? ", too few for intervals" : "");
+    printf("%s: %zu %s by %" PRId64 " %s%s\n", b->block, b->answer_count,
+           b->answer_count == 1 ? "comparison" : "comparisons", b->persons,
+           b->persons == 1 ? "person" : "people", b->persons < 2 ? ", too few for intervals" : "");
     bool ok = table_print(&t, stdout);
     table_finish(&t);
     if (b->equal)

@@ -71,6 +71,8 @@ static void choices_say_what_they_left_out(void **state)
     r = FOVSTATS("choices", "e.db", "--json");
     assert_true(said_after(r.out, "\"epsilon\":0.2}", "n") == 21 &&
                 said_after(r.out, "\"epsilon\":0.2}", "equal") == 1);
+    assert_true(said_after(r.out, "\"epsilon\":0.2}", "participants") ==
+                21); // who answered nothing but "equal"
     program_free(&r);
 }
 
