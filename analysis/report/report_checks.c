@@ -89,13 +89,15 @@ void report_checks(const struct report *r)
         html_printf(
             r->out,
             "In %" PRId64 " of %" PRId64
-            " null trials it is not recorded which option was shown first; they say nothing of the order. ",
-            c->first_unknown, c->nulls);
+            " null %s it is not recorded which option was shown first, which says nothing of the order. ",
+            c->first_unknown, c->nulls, c->nulls == 1 ? "trial" : "trials");
     if (c->null_equal)
-        html_printf(r->out, "\u201cEqual\u201d was answered in %" PRId64 " null trials. ", c->null_equal);
+        html_printf(r->out, "\u201cEqual\u201d was answered in %" PRId64 " null %s. ", c->null_equal,
+                    c->null_equal == 1 ? "trial" : "trials");
     if (c->catches)
-        html_printf(r->out, "Of %" PRId64 " catch trials with an obvious difference %" PRId64 " were missed. ",
-                    c->catches, c->missed);
+        html_printf(r->out, "Of %" PRId64 " catch %s with an obvious difference %" PRId64 " %s missed. ",
+                    c->catches, c->catches == 1 ? "trial" : "trials", c->missed,
+                    c->missed == 1 ? "was" : "were");
     if (c->catch_unknown)
         html_printf(r->out,
                     "Catch trials left out, since the file does not tell which answer was right: %" PRId64 ".",

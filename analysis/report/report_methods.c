@@ -106,6 +106,21 @@ static void rating_methods(const struct report *r)
         fputs("People without a rating in every cell are left out of it. ", r->out);
 }
 
+static void null_methods(const struct report *r)
+{
+    const struct check_bias *const all[] = {&r->checks.side, &r->checks.first};
+    bool exact = false, flip = false;
+    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
+        bool tested = r->checks.nulls > 0 && !isnan(all[i]->p_value);
+        exact = exact || (tested && !all[i]->several);
+        flip = flip || (tested && all[i]->several);
+    }
+    if (exact || flip)
+        html_printf(r->out, "Choices in null trials were held against one half by the exact %s%s%s. ",
+                    exact ? "binomial test" : "", exact && flip ? " and the exact " : "",
+                    flip ? "sign-flip test over people" : "");
+}
+
 // Whether any effect size is printed.
 static bool any_effect_size(const struct ratings *ratings)
 {
@@ -151,6 +166,7 @@ void report_methods(const struct report *r)
         report_choices_methods(r);
     factor_methods(r);
     effect_methods(r);
+    null_methods(r);
     rating_methods(r);
     if (any_effect_size(&r->ratings))
         fputs("d is Cohen\u2019s (d<sub>z</sub>: in the SD of the differences), with exact intervals by the "

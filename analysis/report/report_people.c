@@ -48,9 +48,10 @@ void report_choices_methods(const struct report *r)
     if (r->choices.several)
         methods_several(r);
     if (r->choices.tested > 1)
-        html_printf(r->out,
-                    "Each cell was tested by itself; Holm\u2019s p is adjusted for all %zu cells with a test. ",
-                    r->choices.tested);
+        html_printf(
+            r->out,
+            "Each cell was tested by itself; Holm\u2019s p is adjusted for the %zu cells that were tested. ",
+            r->choices.tested);
 }
 
 static void share_interval(FILE *out, double share, struct stat_interval ci)

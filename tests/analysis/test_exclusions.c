@@ -152,6 +152,7 @@ static void what_is_not_known_is_left_out(void **state)
     expect(page,
            "The option shown first was chosen in 0 of 6 (0.0\u00a0%, 95\u00a0% interval 0.0 to 45.9\u00a0%, "
            "exact p = 0.0313, with Holm\u2019s correction for these two checks 0.0430)");
+    expect(page, "Choices in null trials were held against one half by the exact ");
     expect(page, "In 4 of 10 null trials it is not recorded which option was shown first");
     expect(page, "Of 3 catch trials with an obvious difference 2 were missed. Catch trials left out, since the "
                  "file does not tell which answer was right: 2.");
@@ -166,7 +167,8 @@ static void what_is_not_known_is_left_out(void **state)
     study_file_make("u.db", &(struct study_desc){.pooled = false});
     study_file_sql("u.db", "UPDATE trial SET first_shown = NULL WHERE session_id > 10");
     page = page_of("u.db");
-    expect(page, "Over all 41 answers for an option: the one shown first was chosen in 10 (50\u00a0%), ");
+    expect(page, "Of all 41 answers for an option, counted as they are: the one shown first was chosen in 10 "
+                 "(50\u00a0%), ");
     expect(page, " Of 21 it is not known which was shown first.");
     free(page);
     char *json = tool("choices", "u.db");

@@ -73,7 +73,8 @@ static void one_answer_each(void **state)
     expect((const char *const[]){"exact two-sided binomial test", "McNemar", "Fay and Lumbard", "Welch",
                                  "Wilcoxon", "Thurstone", "Each cell was tested by itself", "Cohen", NULL},
            (const char *const[]){"Fisher", "Cochran", "exchanging", "Newcombe", "variance", "Ratings of both",
-                                 "mixed model", "joined", "join cells", "per person and cell", NULL});
+                                 "mixed model", "null trials", "joined", "join cells", "per person and cell",
+                                 NULL});
     expect((const char *const[]){NULL}, scales);
 }
 
