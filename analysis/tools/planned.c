@@ -189,8 +189,8 @@ static int analyse(const struct command *command, const struct study_arguments *
     if (!load(&l, sample, arguments->conf, error, sizeof error)) {
         code = command_fail(command, EXIT_FAILED, "%s", error);
     } else if (l.plans.count == 0) {
-        code = command_fail(command, EXIT_FAILED, "%s: %s",
-                            store_reader_path(sample->files[0]), plans_none(sample));
+        code = command_fail(command, EXIT_FAILED, "%s: %s", store_reader_path(sample->files[0]),
+                            plans_none(sample));
     } else {
         if (arguments->json)
             print_json(sample, &l);

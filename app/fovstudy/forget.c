@@ -66,8 +66,18 @@ int command_forget(int argc, char **argv)
         fprintf(stderr, "fovstudy: %s\n", error.text);
         return EXIT_FAILED;
     }
-    printf("erased participant %s: %" PRId64 " sessions, %" PRId64 " trials, %" PRId64 " answers, %" PRId64
-           " frames, %" PRId64 " gaze samples\n",
-           code, gone.sessions, gone.trials, gone.answers, gone.frames, gone.gaze);
+    const struct {
+        int64_t count;
+        const char *one, *many;
+    } parts[] = {{gone.sessions, "session", "sessions"},
+                 {gone.trials, "trial", "trials"},
+                 {gone.answers, "answer", "answers"},
+                 {gone.frames, "frame", "frames"},
+                 {gone.gaze, "gaze sample", "gaze samples"}};
+    printf("erased participant %s", code);
+    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++)
+        printf("%s %" PRId64 " %s", i ? "," : ":", parts[i].count,
+               parts[i].count == 1 ? parts[i].one : parts[i].many);
+    putchar('\n');
     return EXIT_DONE;
 }

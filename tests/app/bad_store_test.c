@@ -161,7 +161,7 @@ static void a_person_is_forgotten(void **state)
     const struct command_result *result = command("fovstudy forget --db '%s/forget.db' p-secret", folder);
     assert_string_equal(result->err, "");
     assert_int_equal(result->status, 0);
-    assert_non_null(strstr(result->out, "erased participant p-secret: 1 sessions, 3 trials, 3 answers"));
+    assert_non_null(strstr(result->out, "erased participant p-secret: 1 session, 3 trials, 3 answers"));
     assert_int_equal(command("grep -c p-secret '%s/forget.db'", folder)->status, 1);
     assert_string_equal(command("ls '%s' | grep -c forget.db", folder)->out, "1\n"); // no log is left beside it
     assert_string_equal(
