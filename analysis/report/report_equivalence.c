@@ -33,8 +33,8 @@ static void equivalence_row(const struct report *r, const struct choice_cell *ce
     p_cell(out, e->p_value);
     p_cell(out, equality->holm);
     p_cell(out, equality->difference);
-    html_cell(out, "td class=\"word\"", "%s", equality->planned ? "planned" : "cells");
-    html_cell(out, "td class=\"word\"", "%s", choice_equivalence_words(equality, 1 - r->conf));
+    html_cell(out, "td class=\"word\"", "%s%s", choice_equivalence_words(equality, 1 - r->conf),
+              equality->planned ? " (planned)" : "");
     fputs("</tr>\n", out);
 }
 
@@ -50,16 +50,16 @@ static bool has_family(const struct report *r, const struct choice_equality *equ
 static void families(const struct report *r, const struct choice_equality *equalities)
 {
     if (has_family(r, equalities, true))
-        fputs(
-            "Family \u201cplanned\u201d: this equality was planned, and both p (Holm) are those of the planned "
-            "analyses, adjusted for all that was planned. ",
-            r->out);
+        fputs("\u201cPlanned\u201d: equality of this cell was planned, and both p (Holm) are those of the "
+              "planned "
+              "analyses, adjusted for all that was planned. ",
+              r->out);
     if (has_family(r, equalities, false))
-        fputs(
-            "Family \u201ccells\u201d: equality of this cell was not planned; both p (Holm) are adjusted over "
-            "the tests of a difference and of equality of all such cells together, where the two of a cell "
-            "count once, as their hypotheses exclude each other (Shaffer 1986). ",
-            r->out);
+        fputs("Where a result is not marked as planned, equality of the cell was not; both p (Holm) are "
+              "adjusted over "
+              "the tests of a difference and of equality of all such cells together, where the two of a cell "
+              "count once, as their hypotheses exclude each other (Shaffer 1986). ",
+              r->out);
 }
 
 static void equivalence_table(const struct report *r, double margin, const struct choice_equality *equalities)
@@ -72,7 +72,7 @@ static void equivalence_table(const struct report *r, double margin, const struc
             "scope=\"col\">people</th><th scope=\"col\" class=\"word\">two one-sided tests</th><th "
             "scope=\"col\">%.4g&nbsp;%% interval</th><th scope=\"col\">p above</th><th scope=\"col\">p "
             "below</th><th scope=\"col\">p</th><th scope=\"col\">p (Holm)</th><th scope=\"col\">p of "
-            "a difference (Holm)</th><th scope=\"col\" class=\"word\">family</th><th scope=\"col\" "
+            "a difference (Holm)</th><th scope=\"col\" "
             "class=\"word\">result</th></tr></thead>\n<tbody>\n",
             50 - 100 * margin, 50 + 100 * margin, 100 * (1 - 2 * (1 - r->conf)));
     for (size_t i = 0; i < r->choices.cell_count; i++)

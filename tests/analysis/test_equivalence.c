@@ -1,5 +1,7 @@
 // Equality of cells in fovstats choices and in the report: one claim, one p and one verdict, by the family that
 // it belongs to. Numbers against R (tests/reference/planned.R).
+#include "analysis/report/choice_equivalence.h"
+
 #include "planned_study.h"
 #include "program.h"
 #include "reference.h"
@@ -120,6 +122,16 @@ static void a_planned_claim_is_that_of_the_planned_analyses(void **state)
     program_free(&text);
 }
 
+static void each_margin_has_its_own_rows(void **state)
+{
+    (void)state;
+    make_even(PLAN("binomial", "choice", "cell", ",\"margin\":0.3") "," PLAN("binomial", "choice", "cell",
+                                                                             ",\"margin\":0.25"));
+    expect_cells(FOVSTATS("choices", "s.db", "--margin", "0.25", "--json"), "both 0.25", "planned", shown,
+                 neither);
+    expect_cells(FOVSTATS("choices", "s.db", "--margin", "0.3", "--json"), "both 0.3", "planned", shown, shown);
+}
+
 // What was planned is one margin, about one half: another claim has another family.
 static void another_claim_is_not_the_planned_one(void **state)
 {
@@ -131,6 +143,19 @@ static void another_claim_is_not_the_planned_one(void **state)
     SAID_PLACE(r.out, "Equivalence: is the preference within 0.35 to 0.85?", "  cells ", "Family cells");
     assert_null(strstr(r.out, "Family planned"));
     program_free(&r);
+    struct planned_study l;
+    struct choices c;
+    char error[SAMPLE_ERROR_SIZE];
+    planned_study_load(&l);
+    for (int i = 0; i < 2; i++) {
+        const struct choices_desc desc = {.p0 = i ? 0.6 : 0.5};
+        assert_true(choices_load_for(&c, &l.sample, &desc, error, sizeof error));
+        struct choice_equality *equalities = choice_equalities(&c, &l.planned, 0.25, true);
+        assert_true(equalities && equalities[0].planned == (i == 0) && equalities[1].planned == (i == 0));
+        free(equalities);
+        choices_free(&c);
+    }
+    planned_study_free(&l);
 }
 
 // A level of one cell, and a scene that is the only one, are that cell; a part or a sum of cells is not.
@@ -192,17 +217,17 @@ static void the_report_has_one_verdict(void **state)
                "<td>0.0368</td>", ">\u03b5 0.05: equality within", "neither equality nor a difference is shown",
                "<td>0.0862</td>");
     SAID_PLACE(page, "aria-label=\"Equivalence\"",
-               "<td>0.0100</td><td>0.0368</td><td>1.0000</td><td class=\"word\">planned</td><td "
-               "class=\"word\">equality within the margin is shown</td>",
-               "<td>0.0287</td><td>0.0862</td><td>1.0000</td><td class=\"word\">planned</td><td "
-               "class=\"word\">neither is shown</td>",
+               "<td>0.0100</td><td>0.0368</td><td>1.0000</td><td "
+               "class=\"word\">equality within the margin is shown (planned)</td>",
+               "<td>0.0287</td><td>0.0862</td><td>1.0000</td><td "
+               "class=\"word\">neither is shown (planned)</td>",
                "both p (Holm) are those of the planned analyses");
     assert_null(strstr(page, "Equality of single cells"));
     free(page);
     planned_study_plan(PLAN("binomial", "choice", "study", ",\"margin\":0.25"));
     page = page_of_the_study();
     SAID_PLACE(page, "aria-label=\"Equivalence\"",
-               "<td>0.0575</td><td>1.0000</td><td class=\"word\">cells</td>");
+               "<td>0.0575</td><td>1.0000</td><td class=\"word\">neither is shown</td>");
     SAID_PLACE(page, ">Methods<", "Equality of single cells that was not planned");
     free(page);
 }
@@ -213,6 +238,7 @@ int main(void)
         cmocka_unit_test(tests_of_cells_are_one_family),
         cmocka_unit_test(one_sided_tests_do_not_exclude_each_other),
         cmocka_unit_test(a_planned_claim_is_that_of_the_planned_analyses),
+        cmocka_unit_test(each_margin_has_its_own_rows),
         cmocka_unit_test(another_claim_is_not_the_planned_one),
         cmocka_unit_test(a_row_is_a_cell_where_it_has_all_of_it),
         cmocka_unit_test(people_have_the_planned_verdict_too),

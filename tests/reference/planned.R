@@ -70,8 +70,12 @@ for (margin in c(0.2, 0.25, 0.3)) {
   even("even", margin)
   out <- c(out, mapply(line, rows, holm_of(rows)))
 }
-# "rated": the same among more that was planned. "less": one-sided tests of a difference, which do not exclude one beyond
+# "both": planned with two margins. "rated": the same among more that was planned. "less": one-sided tests of a difference, which do not exclude one beyond
 # the margin, so that all four count.
+rows <- list()
+even("both", 0.3)
+even("both", 0.25)
+out <- c(out, mapply(line, rows, holm_of(rows)))
 rows <- list()
 even("rated", 0.25)
 of_t("rated 0.25 paired_t rating order test", t.test(change[1:11]))
