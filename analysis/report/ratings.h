@@ -48,7 +48,7 @@ struct rating_question {
     struct stat_ttest first_between;
     struct stat_effect between_effect; // in the pooled SD
     int64_t unpaired;                  // sessions with a rating and no pair
-    int64_t late_first;                // sessions whose rating planned as the first was given after both were seen
+    int64_t late_first; // sessions whose rating planned as the first was given after both were seen
 };
 
 struct ratings {
