@@ -33,10 +33,13 @@ struct planned_row {
                    // difference; NaN: it does not
     enum stat_verdict verdict; // of both rows by Holm's p; of rows of equality with a p
     bool share, effect_size;   // the estimate is a share of choices; partial eta squared, without an interval
-    const char *unit;          // "" for none
-    char test[96];             // "exact binomial, 6 of 22", "t(21) = 2.10", "" for an estimate
-    double p_value, holm;      // NaN where nothing was tested
-    char note[256];            // why not, or the verdict; "" for none
+    // Of a row of equality about all of one cell of choices.h; block NULL: it is not.
+    const char *block, *factors;
+    size_t option, reference; // conditions
+    const char *unit;         // "" for none
+    char test[96];            // "exact binomial, 6 of 22", "t(21) = 2.10", "" for an estimate
+    double p_value, holm;     // NaN where nothing was tested
+    char note[256];           // why not, or the verdict; "" for none
 };
 
 // Where values come from, beside the sample. Loaded, and borrowed for the call.

@@ -1,7 +1,6 @@
 // What the protocol planned, each with its result: the report's table of planned analyses as text or JSON.
-#include "analysis/report/planned.h"
-
 #include "analysis/tools/arguments.h"
+#include "analysis/tools/planned_results.h"
 #include "analysis/tools/study_arguments.h"
 #include "analysis/tools/table.h"
 
@@ -23,38 +22,6 @@ static const char help[] =
     "  --protocol N analyse the sessions of this protocol; else of the one with most sessions\n"
     "  --json       one object with the plans in an array; shares are from 0 to 1, verdicts are empty but for\n"
     "               tests of equality\n";
-
-struct loaded {
-    struct plans plans;
-    struct ratings ratings;
-    struct thresholds thresholds;
-    struct adjusted adjusted;
-    struct planned planned;
-};
-
-static bool load(struct loaded *l, struct sample *sample, double conf, char *error, size_t error_size)
-{
-    *l = (struct loaded){0};
-    if (!plans_load(&l->plans, sample)) {
-        snprintf(error, error_size, "not enough memory");
-        return false;
-    }
-    const struct planned_sources sources = {&l->ratings, &l->thresholds, &l->adjusted};
-    return ratings_load(&l->ratings, sample, conf, false, error, error_size) &&
-           thresholds_load(&l->thresholds, sample, &(struct threshold_options){.conf = conf}, error,
-                           error_size) &&
-           adjusted_load(&l->adjusted, sample, conf, error, error_size) &&
-           planned_load(&l->planned, sample, &l->plans, &sources, conf, error, error_size);
-}
-
-static void unload(struct loaded *l)
-{
-    planned_free(&l->planned);
-    adjusted_free(&l->adjusted);
-    thresholds_free(&l->thresholds);
-    ratings_free(&l->ratings);
-    plans_free(&l->plans);
-}
 
 static void number_cells(struct table *t, const struct planned_row *row)
 {
@@ -81,7 +48,7 @@ static void p_cell(struct table *t, double p)
         table_cell(t, "%.4g", p);
 }
 
-static bool print_plan(const struct loaded *l, size_t index)
+static bool print_plan(const struct planned_results *l, size_t index)
 {
     static const char *const headings[] = {"<row", "people", "estimate", "interval",
                                            "p",    "Holm p", "<test",    NULL};
@@ -110,7 +77,7 @@ static bool print_plan(const struct loaded *l, size_t index)
     return ok;
 }
 
-static bool print_text(const struct sample *sample, const struct loaded *l)
+static bool print_text(const struct sample *sample, const struct planned_results *l)
 {
     bool ok = true;
     study_title(sample, "Planned analyses");
@@ -152,7 +119,7 @@ static void row_json(struct json *json, const struct planned_row *row)
     json_close(json, '}');
 }
 
-static void print_json(const struct sample *sample, const struct loaded *l)
+static void print_json(const struct sample *sample, const struct planned_results *l)
 {
     struct json json = {stdout, false};
     json_open(&json, NULL, '{');
@@ -183,10 +150,10 @@ static int analyse(const struct command *command, const struct study_arguments *
                    struct sample *sample)
 {
     int code;
-    struct loaded l;
+    struct planned_results l;
     char error[SAMPLE_ERROR_SIZE];
     bool ok = true;
-    if (!load(&l, sample, arguments->conf, error, sizeof error)) {
+    if (!planned_results_load(&l, sample, arguments->conf, error, sizeof error)) {
         code = command_fail(command, EXIT_FAILED, "%s", error);
     } else if (l.plans.count == 0) {
         code = command_fail(command, EXIT_FAILED,
@@ -199,7 +166,7 @@ static int analyse(const struct command *command, const struct study_arguments *
             ok = print_text(sample, &l);
         code = ok ? command_finish(command) : command_fail(command, EXIT_FAILED, "not enough memory");
     }
-    unload(&l);
+    planned_results_free(&l);
     return code;
 }
 
