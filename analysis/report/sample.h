@@ -78,8 +78,8 @@ struct sample_factor {
     double number; // NaN where the level is not a number
 };
 
-// Trials of a block with these factors in one scene, that sessions planned, whatever became of them; of practice,
-// catch and null trials none.
+// Trials of a block with these factors in one scene, that sessions planned, whatever became of them; of
+// practice, catch and null trials none.
 struct sample_cell {
     const char *block, *factors, *scene; // factors: the whole JSON text
     size_t session_count;

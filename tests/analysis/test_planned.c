@@ -82,7 +82,8 @@ static void what_cannot_be_computed_says_why(void **state)
         {PLAN("paired_t", "toggles", "-", ""), "one value per person makes no pair"},
         {PLAN("mean", "threshold", "scene", ""), "no such value was recorded that counts"},
         {PLAN("paired_t", "adjusted", "factor", ""), "no such value was recorded that counts"},
-        {PLAN("unpaired_t", "toggles", "factor", ""), "22 at several, so that it lies within people; a paired test is theirs"},
+        {PLAN("unpaired_t", "toggles", "factor", ""),
+         "22 at several, so that it lies within people; a paired test is theirs"},
         {PLAN("paired_t", "choice", "scene", ""), "it compares two, and the data have one alone"},
         {PLAN("anova", "toggles", "factor", ""), "no spread within people"},
     };
