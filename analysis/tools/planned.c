@@ -16,7 +16,9 @@ static const char help[] =
     "subtracted from what. A margin of equivalence is a test of its own, and equality counts as shown by "
     "Holm's\n"
     "p alone; it and the test of a difference in the same row count once, for one of their hypotheses at most\n"
-    "is true. What cannot be computed says why.\n"
+    "is true. What cannot be computed says why: paired tests and analyses of variance need a\n"
+    "factor within people, unpaired ones a factor between them. It lies within where at least half of the\n"
+    "people were to see several of its levels. Who does not fit is left out and said.\n"
     "  --conf C     confidence of the intervals (0.95); 1 - C is the level of verdicts\n"
     "  --simulated  analyse simulated sessions, which are left out otherwise\n"
     "  --protocol N analyse the sessions of this protocol; else of the one with most sessions\n"
@@ -103,6 +105,7 @@ static void row_json(struct json *json, const struct planned_row *row)
     json_text(json, "row", row->words[0] ? row->words : "all");
     json_integer(json, "people", (int64_t)row->people);
     json_integer(json, "people_without_some_cells", (int64_t)row->partial);
+    json_integer(json, "people_left_out", (int64_t)row->left_out);
     json_text(json, "estimate_is", row->effect_size ? "partial eta squared" : row->share ? "share" : "mean");
     json_bool(json, "difference", row->difference);
     json_text(json, "unit", row->unit);

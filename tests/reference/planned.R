@@ -95,4 +95,16 @@ b <- binom.test(4, 19)
 add("several cell 0.05", 4 / 19, b$conf.int[1], b$conf.int[2], b$p.value)
 equality("several equality 0.05", 4, 19, 0.1)
 out <- c(out, mapply(line, rows, holm_of(rows)))
+# Toggles (70 i + 7 cell) %% 11. Strays: of persons 1 to 14 the odd were to see cell 1 alone and the even cell 2, of 15 to
+# 22 both, 20 to 22 with no valid answer in cell 2; who has both is left out. Dropouts: all were to see both, persons 9 to
+# 22 stopped before cell 2.
+a <- (70 * i + 7) %% 11; b <- (70 * i + 14) %% 11
+rows <- list()
+of_t("strays unpaired_t toggles", t.test(a[(i <= 14 & odd) | i >= 20], b[i <= 14 & !odd]))
+out <- c(out, line(rows[[1]], rows[[1]][[2]][4]))
+rows <- list()
+of_t("dropouts paired_t toggles", t.test((a - b)[1:8]))
+f <- t.test((a - b)[1:8])
+add("dropouts anova toggles", f$statistic^2 / (f$statistic^2 + 7), NA, NA, pf(f$statistic^2, 1, 7, lower.tail = FALSE))
+out <- c(out, mapply(line, rows, holm_of(rows)))
 writeLines(c("row,estimate,low,high,p,holm", gsub("NA", "nan", out)), "planned.csv")
