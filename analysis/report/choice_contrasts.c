@@ -19,22 +19,25 @@ struct people_sums {
     size_t count;
 };
 
-// Whether two cells are the same but for one factor's level, and at least one has several answers of a person.
+// Whether somebody answered several times at a level of that cell's set: then all pairs of the set are compared
+// here, those of one answer each too, so that none is missing and Holm's p counts them all.
+static bool set_is_several(const struct choices *c, size_t cell, size_t level)
+{
+    for (size_t i = 0; i < c->cell_count; i++)
+        if (c->cells[i].several && choice_same_but(&c->cells[cell], &c->cells[i], level))
+            return true;
+    return false;
+}
+
+// Whether two cells are the same but for one factor's level.
 static bool are_pair(const struct choice_cell *a, const struct choice_cell *b, size_t *out_level)
 {
-    size_t differing = 0;
-    if (!(a->several || b->several) || a->level_count != b->level_count || a->reference != b->reference ||
-        strcmp(a->block, b->block) != 0)
-        return false;
-    for (size_t i = 0; i < a->level_count; i++) {
-        if (strcmp(a->levels[i].factor, b->levels[i].factor) != 0)
-            return false;
-        if (strcmp(a->levels[i].value, b->levels[i].value) != 0) {
+    for (size_t i = 0; i < a->level_count; i++)
+        if (choice_same_but(a, b, i) && strcmp(a->levels[i].value, b->levels[i].value) != 0) {
             *out_level = i;
-            differing++;
+            return true;
         }
-    }
-    return differing == 1;
+    return false;
 }
 
 static const struct stat_person *counts_of(const struct choice_cell *cell, size_t person)
@@ -88,7 +91,7 @@ static bool fill(struct choice_contrast *contrast, const struct choices *c)
     for (size_t i = 0; i < c->cell_count; i++)
         for (size_t j = i + 1; ok && j < c->cell_count; j++)
             if (are_pair(&c->cells[i], &c->cells[j], &level) &&
-                is_of(contrast, &c->cells[i], &c->cells[j], level)) {
+                is_of(contrast, &c->cells[i], &c->cells[j], level) && set_is_several(c, i, level)) {
                 struct choice_design design;
                 ok = choice_design(c, i, level, &design);
                 if (!ok || !design.within)
@@ -140,7 +143,7 @@ static bool collect(struct choices *c)
             bool known = !are_pair(a, b, &level);
             for (size_t k = 0; k < c->contrast_count && !known; k++)
                 known = is_of(&c->contrasts[k], a, b, level);
-            if (known)
+            if (known || !set_is_several(c, i, level))
                 continue;
             if (!choice_design(c, i, level, &design))
                 return false;

@@ -73,8 +73,9 @@ struct choice_cell {
     size_t reactions;
 };
 
-// Two levels of a factor within people (choice_design.h), compared where at least one of the cells has several
-// answers of a person: shares at level a minus those at level b in cells that are otherwise the same.
+// Two levels of a factor within people (choice_design.h), of a set of cells in which somebody answered several
+// times at a level, whichever: shares at level a minus those at level b in cells that are otherwise the same.
+// All pairs of such a set.
 struct choice_contrast {
     const char *block, *factor, *a, *b;
     size_t cell_pairs;   // of them the mean

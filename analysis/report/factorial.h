@@ -3,7 +3,8 @@
 // One analysis per question and block. A person's ratings in one cell are averaged; a person without a rating
 // in every cell is named and left out, nothing is filled. Factors with one level, and factors that follow from
 // another one, are named and left out. Pairs of levels are tested where their factor's corrected p is at most
-// 1 - conf. Does not: analyse factors between people, and says so.
+// 1 - conf. Does not: analyse factors that lie between people by the design (factor_design.h), whoever rated at
+// several of their levels, and says so.
 #ifndef ANALYSIS_REPORT_FACTORIAL_H
 #define ANALYSIS_REPORT_FACTORIAL_H
 

@@ -1,6 +1,8 @@
 // From ratings that carry their factors as text to a full table of people and cells.
 #include "analysis/report/factorial_private.h"
 
+#include "analysis/report/factor_design.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -159,20 +161,53 @@ static size_t cell_of(const struct keys *keys, size_t text)
     return cell;
 }
 
-// A factor of which nobody has seen two levels.
-static const char *between_people(const struct factorial *f, const struct keys *keys)
+// Who was to rate at which level of a factor, and who did. False where memory ran out.
+static bool designs_of(const struct factorial *f, const struct key *key, const struct sample *sample,
+                       struct choice_design *out_planned, struct choice_design *out_rated)
 {
-    for (size_t k = 0; k < keys->count; k++) {
-        bool differs = false;
-        for (size_t i = 0; i < f->rating_count && !differs; i++)
-            for (size_t j = 0; j < i && !differs; j++)
-                differs =
-                    f->ratings[i].person == f->ratings[j].person &&
-                    keys->items[k].of_text[f->ratings[i].cell] != keys->items[k].of_text[f->ratings[j].cell];
-        if (!keys->items[k].dropped && !differs)
-            return keys->items[k].name;
+    struct factor_design planned, rated = {0};
+    bool ok = factor_design_init(&planned, sample) && factor_design_init(&rated, sample);
+    for (size_t t = 0; ok && t < f->text_count; t++)
+        factor_design_planned(&planned, sample, f->block, f->texts[t], "", key->levels[key->of_text[t]]->value);
+    for (size_t i = 0; ok && i < f->rating_count; i++) {
+        const char *level = key->levels[key->of_text[f->ratings[i].cell]]->value;
+        factor_design_see(&planned, f->ratings[i].person, level);
+        factor_design_see(&rated, f->ratings[i].person, level);
     }
-    return NULL;
+    if (ok) {
+        *out_planned = factor_design_decide(&planned);
+        *out_rated = factor_design_decide(&rated);
+    }
+    factor_design_finish(&planned);
+    factor_design_finish(&rated);
+    return ok;
+}
+
+// Refuses where a factor lies between people: those few who rated several of its levels are not the study.
+static bool refuse_between(struct factorial *f, const struct keys *keys, const struct sample *sample)
+{
+    for (size_t k = 0; k < keys->count && !f->refusal[0]; k++) {
+        const struct key *key = &keys->items[k];
+        struct choice_design planned, rated;
+        if (key->dropped)
+            continue;
+        if (!designs_of(f, key, sample, &planned, &rated))
+            return false;
+        if (rated.several == 0 && planned.within)
+            snprintf(f->refusal, sizeof f->refusal,
+                     "nobody rated two levels of %.80s, though %zu of %zu were to", key->name, planned.several,
+                     planned.one + planned.several);
+        else if (rated.several == 0)
+            snprintf(f->refusal, sizeof f->refusal,
+                     "nobody rated two levels of %.80s, and factors between people are not analysed",
+                     key->name);
+        else if (!planned.within)
+            snprintf(f->refusal, sizeof f->refusal,
+                     "%.60s lies between people (%zu were to answer at one of its levels, %zu at several), and "
+                     "factors between people are not analysed",
+                     key->name, planned.one, planned.several);
+    }
+    return true;
 }
 
 static bool keep_person(struct factorial *f, size_t person, const double *sum, const size_t *count)
@@ -228,13 +263,10 @@ bool factorial_design(struct factorial *f, const struct sample *sample)
         drop_keys(f, &keys);
         ok = take_factors(f, &keys);
     }
+    ok = ok && (f->refusal[0] || refuse_between(f, &keys, sample));
     if (ok && !f->refusal[0]) {
         ok = fill(f, &keys, sample->person_count);
-        const char *between = ok && f->people == 0 ? between_people(f, &keys) : NULL;
-        if (between)
-            snprintf(f->refusal, sizeof f->refusal,
-                     "nobody rated two levels of %.80s, and factors between people are not analysed", between);
-        else if (f->people < 2)
+        if (f->people < 2)
             snprintf(f->refusal, sizeof f->refusal,
                      "it takes two participants with a rating in each of the %zu cells, and there %s %zu",
                      f->cells, f->people == 1 ? "is" : "are", f->people);

@@ -56,8 +56,9 @@ void figure_interval(FILE *data, double low, double high, double least, double m
 // Where a label says what the upright axis shows: above the left corner. Give it a line at the top.
 #define FIGURE_UPRIGHT "at graph 0, graph 1 left offset -4,0.8 tc rgb '" FIGURE_INK "'"
 
-// Runs gnuplot and removes the folder. *out_svg is freed by the caller. False with a sentence. Numbers that gnuplot
-// refuses (an infinite scale, levels equal to its last digit) are no failure: the picture is then a sentence.
+// Runs gnuplot and removes the folder. *out_svg is freed by the caller. False with a sentence. Numbers that
+// gnuplot refuses (an infinite scale, levels equal to its last digit) are no failure: the picture is then a
+// sentence.
 bool figure_end(struct figure *figure, const struct figure_text *text, char **out_svg, char *error,
                 size_t error_size);
 

@@ -2,8 +2,9 @@
 //
 // People are the unit. A person's answers in a cell are averaged, then the cells of a row, and the test is over
 // people; choices of a row are summed per person and tested as a cell is (choices.h). Pairs of levels are
-// compared within people, in cells that are otherwise the same, or between people where nobody saw both. A row
-// of differences names what is subtracted from what.
+// compared within people, in cells that are otherwise the same, or between people, as the plan says; where the
+// factor lies the other way by the design (factor_design.h) there is a sentence and no number. A row of
+// differences names what is subtracted from what, and who was left out.
 //
 // Holm's p is over every row that has a p: the planned family. A margin of equivalence is a claim of its own,
 // so its test has a row of its own in that family, and equality counts as shown by Holm's p alone. No
@@ -26,6 +27,7 @@ struct planned_row {
     char words[512];            // which cell, level or pair; "" where the plan has none
     size_t people;              // with a value
     size_t partial;             // of them, those that lack some of its cells
+    size_t left_out;            // with a value, but not among the people; the note says why
     double estimate, low, high; // NaN where there is none
     double conf;                // of the interval: planned.conf; of a row of equality 1 - 2 (1 - planned.conf)
     bool difference;            // of two levels, or of a person's two ratings
@@ -33,10 +35,13 @@ struct planned_row {
                    // difference; NaN: it does not
     enum stat_verdict verdict; // of both rows by Holm's p; of rows of equality with a p
     bool share, effect_size;   // the estimate is a share of choices; partial eta squared, without an interval
-    const char *unit;          // "" for none
-    char test[96];             // "exact binomial, 6 of 22", "t(21) = 2.10", "" for an estimate
-    double p_value, holm;      // NaN where nothing was tested
-    char note[256];            // why not, or the verdict; "" for none
+    // Of a row of equality about all of one cell of choices.h; block NULL: it is not.
+    const char *block, *factors;
+    size_t option, reference; // conditions
+    const char *unit;         // "" for none
+    char test[96];            // "exact binomial, 6 of 22", "t(21) = 2.10", "" for an estimate
+    double p_value, holm;     // NaN where nothing was tested
+    char note[256];           // why not, or the verdict; "" for none
 };
 
 // Where values come from, beside the sample. Loaded, and borrowed for the call.

@@ -17,6 +17,7 @@ static bool effect_row(struct planned *out, const struct factorial *f, const str
     snprintf(row->words, sizeof row->words, "%.60s%s%.40s%s%.200s", f->question, f->question[0] ? ": " : "",
              name_block ? f->block : "", name_block ? ": " : "", name);
     row->people = f->people;
+    row->left_out = f->left_count;
     row->effect_size = true;
     row->estimate = effect->eta2_partial;
     row->p_value = effect->p_gg;
@@ -25,6 +26,7 @@ static bool effect_row(struct planned *out, const struct factorial *f, const str
     else
         snprintf(row->test, sizeof row->test, "F(%.2f, %.2f) = %.2f", effect->df * effect->epsilon_gg,
                  effect->df_error * effect->epsilon_gg, effect->f);
+    planned_row_left_out(row, "without a value in every cell");
     return true;
 }
 

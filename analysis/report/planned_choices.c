@@ -9,6 +9,7 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 // Each person's answers in the cells of a group.
 static void sum_people(const struct planned_data *data, const struct planned_group *group,
@@ -22,6 +23,26 @@ static void sum_people(const struct planned_data *data, const struct planned_gro
             people[p].n += cell->count[p];
         }
     }
+}
+
+// The section on choices has the same cell, unless the plan tells scenes apart there.
+static void name_cell(struct planned_row *row, const struct planned_data *data,
+                      const struct planned_group *group)
+{
+    const struct planned_cell *cell = &data->cells[group->cells[0]];
+    for (size_t i = 0; i < data->cell_count; i++) {
+        const struct planned_cell *other = &data->cells[i];
+        if (other != cell && other->test == cell->test && other->reference == cell->reference &&
+            strcmp(other->series, cell->series) == 0 && strcmp(other->block, cell->block) == 0 &&
+            strcmp(other->factors, cell->factors) == 0)
+            return;
+    }
+    if (group->cell_count != 1)
+        return;
+    row->block = cell->block;
+    row->factors = cell->factors;
+    row->option = cell->test;
+    row->reference = cell->reference;
 }
 
 static void difference_row(struct planned_row *row, const struct stat_person *people, size_t count, double conf,
@@ -112,6 +133,7 @@ bool planned_choices(struct planned *out, const struct planned_data *data, const
     snprintf(equality->words, sizeof equality->words, "%.400s%sequality within %.4g to %.4g\u00a0%%",
              group->words, group->words[0] ? ": " : "", 50 - 100 * plan->margin, 50 + 100 * plan->margin);
     equality->partial = partial;
+    name_cell(equality, data, group);
     equality_row(equality, room, count, 1 - out->conf, plan->margin);
     return true;
 }

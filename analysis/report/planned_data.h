@@ -2,6 +2,7 @@
 #ifndef ANALYSIS_REPORT_PLANNED_DATA_H
 #define ANALYSIS_REPORT_PLANNED_DATA_H
 
+#include "analysis/report/factor_design.h"
 #include "analysis/report/planned.h"
 #include "analysis/stats/people.h"
 
@@ -64,6 +65,20 @@ void planned_verdicts(struct planned *planned); // of the rows of equality, once
 // planned_pairs.c: rows of pairs of groups. Appends; false where memory ran out.
 bool planned_pairs(struct planned *out, const struct planned_data *data, const struct planned_groups *groups,
                    const struct plan *plan, size_t index);
+// planned_design.c: whether two groups lie within or between people.
+struct planned_design {
+    struct choice_design is;
+    bool *stray; // of each person of the sample: has values at several levels of what lies between people
+};
+
+bool planned_design_load(struct planned_design *out, const struct planned_data *data,
+                         const struct planned_group *a, const struct planned_group *b);
+void planned_design_free(struct planned_design *design);
+// Whether a paired, or an unpaired, test does not fit; the row then says so.
+bool planned_design_refuses(struct planned_row *row, const struct planned_design *design, bool paired);
+// Says how many row->left_out are, people "without ..." or "with ..."; nothing where they are none.
+void planned_row_left_out(struct planned_row *row, const char *why);
+
 // planned_anova.c
 bool planned_anova(struct planned *out, const struct planned_data *data, const struct plan *plan, size_t index,
                    const struct planned_sources *sources);

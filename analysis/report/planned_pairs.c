@@ -1,8 +1,9 @@
-// Two levels, scenes or cells compared: within people where they saw both, else between people.
+// Two levels, scenes or cells compared, within or between people as the plan says, if that is how they lie.
 //
 // Within: a person's difference is the mean over what is otherwise the same at both levels (the block, and the
 // levels of all factors that neither follow from the compared one nor fix it), so that no level is favoured by
-// what else it stood with. Between: Welch's t of the people's means, where nobody saw both.
+// what else it stood with. Between: Welch's t of the people's means, without those who have values at several
+// levels. Who was to see what decides which of them fits (planned_design.c).
 #include "analysis/report/planned_data.h"
 
 #include <math.h>
@@ -100,18 +101,27 @@ static double difference(const struct planned_data *data, const struct planned_g
     return *out_pairs ? sum / (double)*out_pairs : (double)NAN;
 }
 
-static void within(struct planned_row *row, const struct planned_data *data, const struct planned_group *a,
+static bool has_value(const struct planned_data *data, const struct planned_group *group, size_t person)
+{
+    return !isnan(mean_of(data, group, NULL, NULL, person));
+}
+
+static bool within(struct planned_row *row, const struct planned_data *data, const struct planned_group *a,
                    const struct planned_group *b, char (*rests)[512], double conf, double *room)
 {
     size_t n = 0, most = 0, *pairs = calloc(data->sample->person_count + 1, sizeof *pairs);
-    for (size_t p = 0; pairs && p < data->sample->person_count; p++) {
+    if (!pairs)
+        return false;
+    for (size_t p = 0; p < data->sample->person_count; p++) {
         double d = difference(data, a, b, rests, p, &pairs[n]);
         if (!isnan(d)) {
             most = pairs[n] > most ? pairs[n] : most;
             room[n++] = d;
+        } else {
+            row->left_out += has_value(data, a, p) || has_value(data, b, p);
         }
     }
-    for (size_t i = 0; pairs && i < n; i++)
+    for (size_t i = 0; i < n; i++)
         row->partial += pairs[i] < most;
     free(pairs);
     row->people = n;
@@ -122,30 +132,60 @@ static void within(struct planned_row *row, const struct planned_data *data, con
     if (n == 0)
         snprintf(row->note, sizeof row->note,
                  "not estimable: nobody has values of both in what is otherwise the same");
+    else
+        planned_row_left_out(row, "without values of both");
+    return true;
 }
 
 static void between(struct planned_row *row, const struct planned_data *data, const struct planned_group *a,
-                    const struct planned_group *b, double conf, double *room)
+                    const struct planned_group *b, const bool *stray, double conf, double *room)
 {
-    size_t n_a = 0, n_b = 0, both = 0;
+    size_t n_a = 0, n_b = 0;
     double *x = room, *y = room + data->sample->person_count;
     for (size_t p = 0; p < data->sample->person_count; p++) {
         double u = mean_of(data, a, NULL, NULL, p), v = mean_of(data, b, NULL, NULL, p);
-        both += !isnan(u) && !isnan(v);
-        if (!isnan(u))
+        if (stray[p])
+            row->left_out += !isnan(u) || !isnan(v);
+        else if (!isnan(u))
             x[n_a++] = u;
-        if (!isnan(v))
+        else if (!isnan(v))
             y[n_b++] = v;
     }
-    row->people = n_a + n_b - both;
-    if (both) {
+    row->people = n_a + n_b;
+    if (n_a == 0 || n_b == 0) {
         snprintf(row->note, sizeof row->note,
-                 "not computed: %zu %s values of both, so they are not independent; a paired test is theirs",
-                 both, both == 1 ? "person has" : "people have");
-        return;
+                 "not estimable: everybody with values of one of them has values at other levels too");
+    } else {
+        struct stat_ttest t = stat_ttest_welch(x, n_a, y, n_b, &(struct stat_ttest_options){.conf = conf});
+        planned_row_t(row, &t, data->unit, true);
     }
-    struct stat_ttest t = stat_ttest_welch(x, n_a, y, n_b, &(struct stat_ttest_options){.conf = conf});
-    planned_row_t(row, &t, data->unit, true);
+    planned_row_left_out(row, "with values at several levels");
+}
+
+static size_t people_of(const struct planned_data *data, const struct planned_group *a,
+                        const struct planned_group *b)
+{
+    size_t people = 0;
+    for (size_t p = 0; p < data->sample->person_count; p++)
+        people += has_value(data, a, p) || has_value(data, b, p);
+    return people;
+}
+
+static bool compare(struct planned_row *row, const struct planned_data *data, const struct planned_group *a,
+                    const struct planned_group *b, bool paired, char (*rests)[512], double conf, double *room)
+{
+    struct planned_design design;
+    if (!planned_design_load(&design, data, a, b))
+        return false;
+    bool ok = true;
+    if (planned_design_refuses(row, &design, paired))
+        row->people = people_of(data, a, b);
+    else if (paired)
+        ok = within(row, data, a, b, rests, conf, room);
+    else
+        between(row, data, a, b, design.stray, conf, room);
+    planned_design_free(&design);
+    return ok;
 }
 
 static bool add_pair(struct planned *out, const struct planned_data *data, const struct planned_group *a,
@@ -153,7 +193,8 @@ static bool add_pair(struct planned *out, const struct planned_data *data, const
 {
     struct planned_row *row = planned_row_add(out, index);
     double *room = malloc((2 * data->sample->person_count + 1) * sizeof *room);
-    if (row && room) {
+    bool ok = row && room;
+    if (ok) {
         const char *second = a->series[0] && strncmp(b->words, a->series, strlen(a->series)) == 0 &&
                                      b->words[strlen(a->series)] == ':'
                                  ? b->words + strlen(a->series) + 2
@@ -161,13 +202,10 @@ static bool add_pair(struct planned *out, const struct planned_data *data, const
         snprintf(row->words, sizeof row->words, "%.170s \u2212 %.140s", a->words, second);
         row->share = data->counts;
         row->difference = true;
-        if (plan_is(plan, "paired_t", NULL, NULL))
-            within(row, data, a, b, rests, out->conf, room);
-        else
-            between(row, data, a, b, out->conf, room);
+        ok = compare(row, data, a, b, plan_is(plan, "paired_t", NULL, NULL), rests, out->conf, room);
     }
     free(room);
-    return row && room;
+    return ok;
 }
 
 static bool are_pair(const struct planned_group *a, const struct planned_group *b)

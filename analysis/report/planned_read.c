@@ -1,5 +1,6 @@
 // Answers of people as a plan needs them: with their scene, and with times per person. The same are left out as
 // the sections on choices and ratings leave out.
+#include "analysis/report/late_first.h"
 #include "analysis/report/level.h"
 #include "analysis/report/planned_data.h"
 
@@ -11,6 +12,7 @@ struct filling {
     struct planned_data *data;
     const struct plan *plan;
     size_t file;
+    struct late_first late_firsts;
     // The first of a person's two ratings while the second is waited for.
     int64_t trial_id, session_id;
     char question[128], subject;
@@ -64,7 +66,8 @@ static bool add_trial(void *user, const struct store_trial_row *row)
 }
 
 // Before and after: of each pair of options in their order by itself, for the differences have other meanings.
-// What was planned first but rated after the second was rated second, and makes no pair (ratings.h).
+// What was planned first but rated after the second had been seen was rated second, and makes no pair
+// (ratings.h).
 static bool add_before_after(struct filling *f, const struct store_rating_row *row, size_t person,
                              size_t condition)
 {
@@ -72,7 +75,7 @@ static bool add_before_after(struct filling *f, const struct store_rating_row *r
     char series[384], words[384];
     bool paired = plan_is(f->plan, "paired_t", NULL, NULL), second = strcmp(row->order, "second") == 0;
     bool waited = f->session_id == row->session_id && strcmp(f->question, row->question) == 0;
-    bool late = waited && !second && f->second;
+    bool late = !second && ((waited && f->second) || late_first_has(&f->late_firsts, row->trial_id));
     const char *order = late ? "second" : row->order;
     if (!second || !waited) {
         f->session_id = row->session_id;
@@ -164,7 +167,10 @@ static bool read_files(struct planned_data *out, const struct plan *plan, bool r
     for (size_t i = 0; ok && i < out->sample->file_count; i++) {
         struct store_reader *file = out->sample->files[i];
         struct filling f = {.data = out, .plan = plan, .file = i};
-        ok = ratings ? store_read_ratings(file, add_rating, &f) : store_read_trials(file, add_trial, &f);
+        ok = !ratings
+                 ? store_read_trials(file, add_trial, &f)
+                 : late_first_load(&f.late_firsts, out->sample, i) && store_read_ratings(file, add_rating, &f);
+        late_first_free(&f.late_firsts);
         if (!ok && store_reader_error(file)[0])
             snprintf(error, error_size, "%s", store_reader_error(file));
     }

@@ -1,5 +1,7 @@
 #include "analysis/report/ratings.h"
 
+#include "analysis/report/late_first.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,13 +16,14 @@ struct open_pair {
     size_t count;
     size_t conditions[2];
     double values[2];
-    bool second[2]; // planned as the second
+    bool second[2]; // planned as the second, or planned as the first and late
 };
 
 struct filling {
     struct ratings *ratings;
     struct sample *sample;
     size_t file;
+    struct late_first late;
     struct open_pair pair;
     struct rating_options_open option;
 };
@@ -139,7 +142,7 @@ static bool add_before_after(struct filling *f, const struct store_rating_row *r
         return true;
     }
     pair->conditions[pair->count] = condition;
-    pair->second[pair->count] = strcmp(row->order, "second") == 0;
+    pair->second[pair->count] = strcmp(row->order, "second") == 0 || late_first_has(&f->late, row->trial_id);
     pair->values[pair->count++] = row->value;
     return true;
 }
@@ -217,7 +220,9 @@ bool ratings_load(struct ratings *out, struct sample *sample, double conf, bool 
     snprintf(error, error_size, "not enough memory");
     for (size_t i = 0; ok && i < sample->file_count; i++) {
         struct filling f = {.ratings = out, .sample = sample, .file = i, .pair = {.question = SAMPLE_NONE}};
-        ok = store_read_ratings(sample->files[i], add_rating, &f) && close_pair(&f);
+        ok = late_first_load(&f.late, sample, i) && store_read_ratings(sample->files[i], add_rating, &f) &&
+             close_pair(&f);
+        late_first_free(&f.late);
         rating_options_close(&out->options, &f.option);
         if (!ok && store_reader_error(sample->files[i])[0])
             snprintf(error, error_size, "%s", store_reader_error(sample->files[i]));

@@ -10,9 +10,10 @@
 // groups are never pooled: their differences have opposite meanings and would cancel.
 //
 // The order is that in which a person saw the options. A flagged trial comes again after all others: where it
-// was the first one, its option was seen before the other, and what counts was rated after both had been seen.
-// Such a pair has no first rating, belongs to neither order and is left out (`late_first`); a second trial that
-// comes again changes no order.
+// was the first one, its option was seen before the other, and what counts was rated after both had been seen,
+// also where the second one was flagged and comes again after it (late_first.h). Such a pair has no first
+// rating, belongs to neither order and is left out (`late_first`); a second trial that alone comes again
+// changes no order.
 #ifndef ANALYSIS_REPORT_RATINGS_H
 #define ANALYSIS_REPORT_RATINGS_H
 
@@ -47,7 +48,7 @@ struct rating_question {
     struct stat_ttest first_between;
     struct stat_effect between_effect; // in the pooled SD
     int64_t unpaired;                  // sessions with a rating and no pair
-    int64_t late_first;                // sessions whose rating planned as the first was given after the second
+    int64_t late_first; // sessions whose rating planned as the first was given after both were seen
 };
 
 struct ratings {

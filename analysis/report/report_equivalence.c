@@ -32,8 +32,34 @@ static void equivalence_row(const struct report *r, const struct choice_cell *ce
     p_cell(out, e->p_high);
     p_cell(out, e->p_value);
     p_cell(out, equality->holm);
-    html_cell(out, "td class=\"word\"", "%s", choice_equivalence_words(cell, equality, 1 - r->conf));
+    p_cell(out, equality->difference);
+    html_cell(out, "td class=\"word\"", "%s%s", choice_equivalence_words(equality, 1 - r->conf),
+              equality->planned ? " (planned)" : "");
     fputs("</tr>\n", out);
+}
+
+// Whether the table has rows of that family.
+static bool has_family(const struct report *r, const struct choice_equality *equalities, bool planned)
+{
+    for (size_t i = 0; i < r->choices.cell_count; i++)
+        if (!r->choices.cells[i].right && equalities[i].planned == planned)
+            return true;
+    return false;
+}
+
+static void families(const struct report *r, const struct choice_equality *equalities)
+{
+    if (has_family(r, equalities, true))
+        fputs("\u201cPlanned\u201d: equality of this cell was planned, and both p (Holm) are those of the "
+              "planned "
+              "analyses, adjusted for all that was planned. ",
+              r->out);
+    if (has_family(r, equalities, false))
+        fputs("Where a result is not marked as planned, equality of the cell was not; both p (Holm) are "
+              "adjusted over "
+              "the tests of a difference and of equality of all such cells together, where the two of a cell "
+              "count once, as their hypotheses exclude each other (Shaffer 1986). ",
+              r->out);
 }
 
 static void equivalence_table(const struct report *r, double margin, const struct choice_equality *equalities)
@@ -45,7 +71,8 @@ static void equivalence_table(const struct report *r, double margin, const struc
             "protocol\u2019s margin?</caption>\n<thead><tr><th scope=\"col\" class=\"word\">cell</th><th "
             "scope=\"col\">people</th><th scope=\"col\" class=\"word\">two one-sided tests</th><th "
             "scope=\"col\">%.4g&nbsp;%% interval</th><th scope=\"col\">p above</th><th scope=\"col\">p "
-            "below</th><th scope=\"col\">p</th><th scope=\"col\">p (Holm)</th><th scope=\"col\" "
+            "below</th><th scope=\"col\">p</th><th scope=\"col\">p (Holm)</th><th scope=\"col\">p of "
+            "a difference (Holm)</th><th scope=\"col\" "
             "class=\"word\">result</th></tr></thead>\n<tbody>\n",
             50 - 100 * margin, 50 + 100 * margin, 100 * (1 - 2 * (1 - r->conf)));
     for (size_t i = 0; i < r->choices.cell_count; i++)
@@ -54,16 +81,17 @@ static void equivalence_table(const struct report *r, double margin, const struc
     fprintf(out, "</tbody></table></div>\n<p>%s",
             r->choices.equal ? "Of answers for one of the options; \u201cequal\u201d is none. " : "");
     fputs("p above and below: that the share lies above the lower and below the upper end of the margin; p is "
-          "the larger of both, p (Holm) is adjusted over the cells of this table. Results are by p (Holm), of "
-          "differences by that of the table before. Only a small p shows equality, and equality within this "
-          "margin alone; a large p in the table before does not. A paper\u2019s claim is that of the planned "
-          "analyses, where p is adjusted for all that was planned.</p>\n",
+          "the larger of both. Results are by both p (Holm). ",
+          out);
+    families(r, equalities);
+    fputs("Only a small p shows equality, and equality within this margin alone; a large p in the table before "
+          "does not.</p>\n",
           out);
 }
 
 static void equivalence(const struct report *r, double margin)
 {
-    struct choice_equality *equalities = choice_equalities(&r->choices, margin, false);
+    struct choice_equality *equalities = choice_equalities(&r->choices, &r->planned, margin, false);
     if (equalities)
         equivalence_table(r, margin, equalities);
     else
@@ -85,4 +113,18 @@ void report_equivalence(const struct report *r)
         fputs("<p class=\"note\">Equivalence within the protocol\u2019s margin is tested at a confidence above "
               "0.5 only.</p>\n",
               r->out);
+}
+
+void report_equivalence_methods(const struct report *r)
+{
+    bool differ;
+    double margin = plans_margin(&r->plans, &differ);
+    struct choice_equality *equalities =
+        isnan(margin) || !(r->conf > 0.5) ? NULL : choice_equalities(&r->choices, &r->planned, margin, false);
+    if (equalities && has_family(r, equalities, false))
+        fputs(
+            "Equality of single cells that was not planned was tested in the same way, in a family of its own "
+            "with the tests of a difference of these cells. ",
+            r->out);
+    free(equalities);
 }

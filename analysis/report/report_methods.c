@@ -174,6 +174,7 @@ void report_methods(const struct report *r)
               r->out);
     report_scale_methods(r);
     report_planned_methods(r);
+    report_equivalence_methods(r);
     html_printf(r->out,
                 "Intervals cover %g\u00a0%%. Where Holm is not named, p-values are not corrected for "
                 "the number of tests. ",

@@ -239,7 +239,10 @@ static void contrasts_table(const struct report *r)
             100 * r->conf);
     for (size_t i = 0; i < r->choices.contrast_count; i++)
         contrast_row(out, &r->choices.contrasts[i]);
-    fputs("</tbody></table></div>\n", out);
+    fputs("</tbody></table></div>\n<p>All pairs of levels are compared so once somebody answered several times "
+          "at "
+          "one of them. Holm\u2019s p is over the pairs of a factor\u2019s levels.</p>\n",
+          out);
 }
 
 void report_people(const struct report *r)

@@ -193,7 +193,10 @@ void report_planned(const struct report *r)
     fputs("<p>A person\u2019s answers in a cell are averaged, then the cells of a row, so that each person "
           "counts "
           "the same; shares of choices are tested as in section \u201cChoices\u201d, joined over cells only "
-          "where the protocol planned it. Levels are compared in what is otherwise the same. ",
+          "where the protocol planned it. Levels are compared in what is otherwise the same, by paired tests "
+          "and analyses of variance where the factor "
+          "lies within people (at least half of them were to see several of its levels, as their trials were "
+          "planned), by unpaired tests where it lies between them; who does not fit is left out and said. ",
           out);
     family(r);
     fputs("A large p does not show that there is no difference. Everything else in this report was not "

@@ -137,8 +137,8 @@ static void first_sentence(const struct report *r, const struct rating_question 
         html_printf(
             r->out,
             " %" PRId64 " %s left out, here and where orders are compared as planned: the rating planned "
-            "as the first was given after the second (a flagged trial comes again at the end), when both "
-            "options had been seen, so that there is no first rating.",
+            "as the first was given when both options had been seen (a flagged trial comes again at the "
+            "end), so that there is no first rating.",
             q->late_first, q->late_first == 1 ? "session is" : "sessions are");
     fputs("</p>\n", r->out);
 }

@@ -288,6 +288,9 @@ void sample_free(struct sample *sample)
         store_reader_close(sample->files[i]);
     for (size_t i = 0; i < sample->text_count; i++)
         free(sample->texts[i]);
+    for (size_t i = 0; i < sample->cell_count; i++)
+        free(sample->cells[i].sessions);
+    free(sample->cells);
     free(sample->files);
     free(sample->sessions);
     free(sample->people);

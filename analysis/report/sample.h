@@ -78,6 +78,14 @@ struct sample_factor {
     double number; // NaN where the level is not a number
 };
 
+// Trials of a block with these factors in one scene, that sessions planned, whatever became of them; of
+// practice, catch and null trials none.
+struct sample_cell {
+    const char *block, *factors, *scene; // factors: the whole JSON text
+    size_t session_count;
+    size_t *sessions; // indices, excluded ones too
+};
+
 struct sample_exclusion {
     size_t file;
     int64_t trial_id, session_id, participant_id;
@@ -98,7 +106,7 @@ struct sample {
     size_t file_count;
     struct store_reader **files;
     size_t session_count, person_count, attribute_count, condition_count, condition_id_count, parameter_count,
-        factor_count, exclusion_count;
+        factor_count, cell_count, exclusion_count;
     struct sample_session *sessions;
     struct sample_person *people;
     struct sample_attribute *attributes;
@@ -106,6 +114,7 @@ struct sample {
     struct sample_condition_id *condition_ids;
     struct sample_parameter *parameters;
     struct sample_factor *factors;
+    struct sample_cell *cells;
     struct sample_exclusion *exclusions;
     char **texts;
     size_t text_count;

@@ -251,7 +251,8 @@ bool sample_read(struct sample *s, char *error, size_t error_size)
         struct store_reader *reader = s->files[i];
         struct filling f = {s, i, NULL};
         if (store_read_sessions(reader, add_session, &f) && store_read_attributes(reader, add_attribute, &f) &&
-            store_read_factors(reader, add_factor, &f) && store_read_conditions(reader, add_condition, &f) &&
+            store_read_factors(reader, add_factor, &f) && sample_read_cells(s, i) &&
+            store_read_conditions(reader, add_condition, &f) &&
             store_read_exclusions(reader, add_exclusion, &f) &&
             (s->exclusion_count == 0 || store_read_trials(reader, name_exclusion, &f)))
             continue;

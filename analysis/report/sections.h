@@ -68,10 +68,11 @@ struct report {
 void report_summary(const struct report *r);
 void report_sample(const struct report *r);
 void report_methods(const struct report *r);
-void report_planned(const struct report *r);         // what the protocol planned, with its results
-void report_choices_methods(const struct report *r); // sentences
-void report_planned_methods(const struct report *r); // sentences
-void report_scale_methods(const struct report *r);   // sentences
+void report_planned(const struct report *r);             // what the protocol planned, with its results
+void report_choices_methods(const struct report *r);     // sentences
+void report_planned_methods(const struct report *r);     // sentences
+void report_equivalence_methods(const struct report *r); // sentences, after those on what was planned
+void report_scale_methods(const struct report *r);       // sentences
 void report_choices(const struct report *r);
 void report_equivalence(const struct report *r);    // by the protocol's margin
 void report_choice_three(const struct report *r);   // where "equal" was an answer

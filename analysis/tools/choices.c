@@ -1,5 +1,4 @@
 #include "analysis/report/choices.h"
-#include "analysis/report/plans.h"
 
 #include "analysis/tools/alternatives.h"
 #include "analysis/tools/arguments.h"
@@ -29,9 +28,11 @@ static const char help[] =
     "  --conf C         confidence of intervals and null regions (0.95)\n"
     "  --margin M       tests whether the preference lies within P - M to P + M, by two one-sided tests; by "
     "default\n"
-    "                   the margin that the protocol planned, about one half; equality is claimed by Holm's p "
-    "over\n"
-    "                   the cells\n"
+    "                   the margin that the protocol planned, about one half; equality that was planned is "
+    "claimed\n"
+    "                   by the planned analyses' Holm's p, of other cells by that over the tests of a "
+    "difference\n"
+    "                   and of equality of all of them\n"
     "  --simulated      analyse simulated sessions, which are left out otherwise\n"
     "  --protocol N     analyse the sessions of this protocol; else of the one with most sessions\n"
     "  --json           one object with the cells in an array\n"
@@ -53,8 +54,7 @@ static const char help[] =
 struct parts {
     struct choice_factors factors;
     struct effects effects;
-    double margin;           // of equivalence; NaN: none was given or planned
-    const char *margin_note; // where it comes from, or why there is none; NULL: nothing to say
+    struct choices_margin margin;
 };
 
 static void print_notes(const struct sample *sample, const struct choices *c)
@@ -132,10 +132,8 @@ static bool print_text(const struct sample *sample, const struct choices *c, con
             printf("%s: %" PRId64 " answers \"equal\" are not part of n.\n", c->cells[i].label,
                    c->cells[i].equal);
     ok = ok && (!c->several || choices_people_print(c)) && choices_factors_print(&parts->factors) &&
-         choices_three_print(c) && (isnan(parts->margin) || choices_equivalence_print(c, parts->margin));
-    if (parts->margin_note)
-        puts(parts->margin_note);
-    ok = ok && choices_effects_print(&parts->effects);
+         choices_three_print(c) && choices_equivalence_print(c, &parts->margin) &&
+         choices_effects_print(&parts->effects);
     print_notes(sample, c);
     return ok;
 }
@@ -194,8 +192,7 @@ static bool print_json(const struct sample *sample, const struct choices *c, con
     choices_contrasts_json(&json, c);
     choices_factors_json(&json, &parts->factors);
     bool ok = choices_three_json(&json, c);
-    if (!isnan(parts->margin))
-        ok = choices_equivalence_json(&json, c, parts->margin) && ok;
+    ok = choices_equivalence_json(&json, c, &parts->margin) && ok;
     choices_effects_json(&json, &parts->effects);
     json_integer(&json, "answers", c->answers);
     json_number(&json, "toggles_mean", c->toggles.mean);
@@ -235,31 +232,6 @@ static int check_margin(const struct command *command, double margin, double p0,
     return -1;
 }
 
-// What the protocol fixed, where no margin was typed. False where memory ran out.
-static bool planned_margin(struct parts *parts, struct sample *sample, const struct choices_desc *desc)
-{
-    struct plans plans;
-    bool differ;
-    if (!isnan(parts->margin))
-        return true;
-    if (!plans_load(&plans, sample))
-        return false;
-    double margin = plans_margin(&plans, &differ);
-    plans_free(&plans);
-    if (differ) {
-        parts->margin_note =
-            "The sessions' protocols plan different margins of equivalence; --margin tests one.";
-    } else if (!isnan(margin) && desc->p0 == 0.5 && desc->conf > 0.5) {
-        parts->margin = margin;
-        parts->margin_note = "The margin is the protocol's.";
-    } else if (!isnan(margin)) {
-        parts->margin_note =
-            "The protocol's margin of equivalence is about one half and for a --conf above 0.5; "
-            "it is not used here.";
-    }
-    return true;
-}
-
 static int run(const struct command *command, int argc, char **argv)
 {
     struct study_arguments arguments;
@@ -284,15 +256,16 @@ static int run(const struct command *command, int argc, char **argv)
     desc.conf = arguments.conf;
     char error[SAMPLE_ERROR_SIZE];
     struct choices c;
-    struct parts parts = {.margin = margin};
+    struct parts parts = {0};
     if (!choices_load_for(&c, &sample, &desc, error, sizeof error)) {
         code = command_fail(command, EXIT_FAILED, "%s", error);
     } else if (c.cell_count == 0) {
         code = command_fail(command, EXIT_FAILED, "%s: no choice was recorded that counts",
                             store_reader_path(sample.files[0]));
-    } else if (!planned_margin(&parts, &sample, &desc) || !choice_factors_load(&parts.factors, &c)) {
+    } else if (!choice_factors_load(&parts.factors, &c)) {
         code = command_fail(command, EXIT_FAILED, "not enough memory");
-    } else if (!effects_load(&parts.effects, &sample, desc.conf, error, sizeof error)) {
+    } else if (!choices_margin_load(&parts.margin, margin, &sample, &c, error, sizeof error) ||
+               !effects_load(&parts.effects, &sample, desc.conf, error, sizeof error)) {
         code = command_fail(command, EXIT_FAILED, "%s", error);
     } else if (arguments.json) {
         code = print_json(&sample, &c, &parts) ? command_finish(command)
@@ -302,6 +275,7 @@ static int run(const struct command *command, int argc, char **argv)
         code = print_text(&sample, &c, &parts) ? command_finish(command)
                                                : command_fail(command, EXIT_FAILED, "not enough memory");
     }
+    choices_margin_free(&parts.margin);
     choice_factors_free(&parts.factors);
     choices_free(&c);
     sample_free(&sample);

@@ -159,7 +159,9 @@ static bool print_contrasts(const struct choices *c)
     puts("\nLevels compared within people: two-sided t-test of each person's difference of shares");
     bool ok = table_print(&t, stdout);
     table_finish(&t);
-    puts("In cells that are otherwise the same. Holm p: adjusted for the pairs of one factor's levels.");
+    puts(
+        "In cells that are otherwise the same, all pairs of levels once somebody answered several times at one "
+        "of\nthem. Holm p: adjusted for the pairs of one factor's levels.");
     return ok;
 }
 

@@ -1,7 +1,6 @@
 // What the protocol planned, each with its result: the report's table of planned analyses as text or JSON.
-#include "analysis/report/planned.h"
-
 #include "analysis/tools/arguments.h"
+#include "analysis/tools/planned_results.h"
 #include "analysis/tools/study_arguments.h"
 #include "analysis/tools/table.h"
 
@@ -17,44 +16,14 @@ static const char help[] =
     "subtracted from what. A margin of equivalence is a test of its own, and equality counts as shown by "
     "Holm's\n"
     "p alone; it and the test of a difference in the same row count once, for one of their hypotheses at most\n"
-    "is true. What cannot be computed says why.\n"
+    "is true. What cannot be computed says why: paired tests and analyses of variance need a\n"
+    "factor within people, unpaired ones a factor between them. It lies within where at least half of the\n"
+    "people were to see several of its levels. Who does not fit is left out and said.\n"
     "  --conf C     confidence of the intervals (0.95); 1 - C is the level of verdicts\n"
     "  --simulated  analyse simulated sessions, which are left out otherwise\n"
     "  --protocol N analyse the sessions of this protocol; else of the one with most sessions\n"
     "  --json       one object with the plans in an array; shares are from 0 to 1, verdicts are empty but for\n"
     "               tests of equality\n";
-
-struct loaded {
-    struct plans plans;
-    struct ratings ratings;
-    struct thresholds thresholds;
-    struct adjusted adjusted;
-    struct planned planned;
-};
-
-static bool load(struct loaded *l, struct sample *sample, double conf, char *error, size_t error_size)
-{
-    *l = (struct loaded){0};
-    if (!plans_load(&l->plans, sample)) {
-        snprintf(error, error_size, "not enough memory");
-        return false;
-    }
-    const struct planned_sources sources = {&l->ratings, &l->thresholds, &l->adjusted};
-    return ratings_load(&l->ratings, sample, conf, false, error, error_size) &&
-           thresholds_load(&l->thresholds, sample, &(struct threshold_options){.conf = conf}, error,
-                           error_size) &&
-           adjusted_load(&l->adjusted, sample, conf, error, error_size) &&
-           planned_load(&l->planned, sample, &l->plans, &sources, conf, error, error_size);
-}
-
-static void unload(struct loaded *l)
-{
-    planned_free(&l->planned);
-    adjusted_free(&l->adjusted);
-    thresholds_free(&l->thresholds);
-    ratings_free(&l->ratings);
-    plans_free(&l->plans);
-}
 
 static void number_cells(struct table *t, const struct planned_row *row)
 {
@@ -81,7 +50,7 @@ static void p_cell(struct table *t, double p)
         table_cell(t, "%.4g", p);
 }
 
-static bool print_plan(const struct loaded *l, size_t index)
+static bool print_plan(const struct planned_results *l, size_t index)
 {
     static const char *const headings[] = {"<row", "people", "estimate", "interval",
                                            "p",    "Holm p", "<test",    NULL};
@@ -110,7 +79,7 @@ static bool print_plan(const struct loaded *l, size_t index)
     return ok;
 }
 
-static bool print_text(const struct sample *sample, const struct loaded *l)
+static bool print_text(const struct sample *sample, const struct planned_results *l)
 {
     bool ok = true;
     study_title(sample, "Planned analyses");
@@ -136,6 +105,7 @@ static void row_json(struct json *json, const struct planned_row *row)
     json_text(json, "row", row->words[0] ? row->words : "all");
     json_integer(json, "people", (int64_t)row->people);
     json_integer(json, "people_without_some_cells", (int64_t)row->partial);
+    json_integer(json, "people_left_out", (int64_t)row->left_out);
     json_text(json, "estimate_is", row->effect_size ? "partial eta squared" : row->share ? "share" : "mean");
     json_bool(json, "difference", row->difference);
     json_text(json, "unit", row->unit);
@@ -152,7 +122,7 @@ static void row_json(struct json *json, const struct planned_row *row)
     json_close(json, '}');
 }
 
-static void print_json(const struct sample *sample, const struct loaded *l)
+static void print_json(const struct sample *sample, const struct planned_results *l)
 {
     struct json json = {stdout, false};
     json_open(&json, NULL, '{');
@@ -183,10 +153,10 @@ static int analyse(const struct command *command, const struct study_arguments *
                    struct sample *sample)
 {
     int code;
-    struct loaded l;
+    struct planned_results l;
     char error[SAMPLE_ERROR_SIZE];
     bool ok = true;
-    if (!load(&l, sample, arguments->conf, error, sizeof error)) {
+    if (!planned_results_load(&l, sample, arguments->conf, error, sizeof error)) {
         code = command_fail(command, EXIT_FAILED, "%s", error);
     } else if (l.plans.count == 0) {
         code = command_fail(command, EXIT_FAILED, "%s: %s", store_reader_path(sample->files[0]),
@@ -198,7 +168,7 @@ static int analyse(const struct command *command, const struct study_arguments *
             ok = print_text(sample, &l);
         code = ok ? command_finish(command) : command_fail(command, EXIT_FAILED, "not enough memory");
     }
-    unload(&l);
+    planned_results_free(&l);
     return code;
 }
 

@@ -119,8 +119,8 @@ static bool print_question(const struct sample *sample, const struct rating_ques
     if (q->unpaired)
         printf("Left out, sessions without two ratings of different options: %" PRId64 ".\n", q->unpaired);
     if (q->late_first)
-        printf("Left out, sessions whose rating planned as the first was given after the second, when both "
-               "options had been seen: %" PRId64 ".\n",
+        printf("Left out, sessions whose rating planned as the first was given when both options had been "
+               "seen: %" PRId64 ".\n",
                q->late_first);
     putchar('\n');
     return ok;

@@ -107,7 +107,7 @@ static bool prepare(struct run *run, const struct store_session_start *start, ch
            resume_plan(&run->rows, start, error, error_size) &&
            run_view_init(&run->view, options, run->study.protocol, error, error_size) &&
            resume_view(&run->view, start, error, error_size) &&
-           event_lines_open(&run->lines, options->events, error, error_size) &&
+           event_lines_open(&run->lines, options->events, options->database, error, error_size) &&
            run_open_gaze(run, start->segments, error, error_size) && run_find_errors(run, error, error_size) &&
            run_rows_reference(&run->rows, &run->study, error, error_size) &&
            run_make_stage(run, error, error_size) && begin_segment(run, start, error, error_size);

@@ -37,7 +37,7 @@ static bool prepare(struct run *run, char *error, size_t error_size)
         return false;
     }
     if (!run_view_init(&run->view, options, run->study.protocol, error, error_size) ||
-        !event_lines_open(&run->lines, options->events, error, error_size) ||
+        !event_lines_open(&run->lines, options->events, options->database, error, error_size) ||
         !run_rows_open(&run->rows, options, &run->study, error, error_size) ||
         (!options->new_protocol && !run_file_protocol(options, run->study.protocol, error, error_size)))
         return false;

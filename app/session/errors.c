@@ -94,8 +94,9 @@ static bool missing(const struct errors *errors, const struct errors_place *plac
     else
         snprintf(
             error, error_size,
-            "the study file holds no measured error of %s on '%s%s'%s; run one session with --display headless "
-            "first, or give --observer sim:errors=FILE with %s '%s%s,ERROR,%s'",
+            "the study file holds no measured error of %s on '%s%s'%s; run a session with --display headless "
+            "first, of somebody who sees it (one of each group, where a factor is between people), or give "
+            "--observer sim:errors=FILE with %s '%s%s,ERROR,%s'",
             spec, place->spec, settings, what, moves ? "lines like" : "the line", place->scene, settings, spec);
     return false;
 }

@@ -11,7 +11,21 @@
 
 #define SEQ "{\"seq\":"
 
-// Takes a last line without an end away, where it is one of ours; text of others gets its end.
+// Whether the file is empty or has our lines: a protocol named by mistake is left alone. Pipes hold nothing.
+static bool is_ours(int file)
+{
+    char head[sizeof SEQ - 1];
+    ssize_t got = pread(file, head, sizeof head, 0);
+    return got < 0 || memcmp(head, SEQ, (size_t)got) == 0;
+}
+
+static bool is_database(int file, const char *database)
+{
+    struct stat a, b;
+    return fstat(file, &a) == 0 && stat(database, &b) == 0 && a.st_dev == b.st_dev && a.st_ino == b.st_ino;
+}
+
+// Takes a last line without an end away.
 static bool mend(int file)
 {
     char tail[EVENT_LINE];
@@ -23,10 +37,7 @@ static bool mend(int file)
     ssize_t start = got;
     while (start > 0 && tail[start - 1] != '\n')
         start--;
-    size_t length = (size_t)(got - start), known = strlen(SEQ) < length ? strlen(SEQ) : length;
-    if (memcmp(tail + start, SEQ, known) == 0)
-        return ftruncate(file, from + start) == 0;
-    return write(file, "\n", 1) == 1;
+    return ftruncate(file, from + start) == 0;
 }
 
 // The number after the last line's, from the last EVENT_LINE bytes of the file.
@@ -63,7 +74,8 @@ static uint64_t following_output(void)
     return next;
 }
 
-bool event_lines_open(struct event_lines *lines, const char *path, char *error, size_t error_size)
+bool event_lines_open(struct event_lines *lines, const char *path, const char *database, char *error,
+                      size_t error_size)
 {
     *lines = (struct event_lines){.file = -1, .next = 1};
     if (!path)
@@ -74,6 +86,17 @@ bool event_lines_open(struct event_lines *lines, const char *path, char *error, 
         return true;
     }
     lines->file = open(path, O_RDWR | O_APPEND | O_CREAT | O_CLOEXEC, 0644);
+    if (lines->file >= 0 && is_database(lines->file, database)) {
+        if (lseek(lines->file, 0, SEEK_END) == 0) // made just now, under the study file's name
+            unlink(path);
+        snprintf(error, error_size, "the events file '%s' is the study file; name another", path);
+        return false;
+    }
+    if (lines->file >= 0 && !is_ours(lines->file)) {
+        snprintf(error, error_size,
+                 "the events file '%s' holds something else; name a new file, or one of earlier events", path);
+        return false;
+    }
     if (lines->file < 0 || !mend(lines->file)) {
         snprintf(error, error_size, "the events file '%s' cannot be written: %s", path, strerror(errno));
         return false;

@@ -19,9 +19,10 @@ struct event_lines {
     uint64_t next;
 };
 
-// "-" is standard output, NULL nobody. An existing file is appended to, its numbers go on. False with a
-// sentence.
-bool event_lines_open(struct event_lines *lines, const char *path, char *error, size_t error_size);
+// "-" is standard output, NULL nobody. A file of earlier lines is appended to, its numbers go on; any other,
+// and the study file `database`, is refused. False with a sentence.
+bool event_lines_open(struct event_lines *lines, const char *path, const char *database, char *error,
+                      size_t error_size);
 // `details` is further members, e.g. "\"trial\":3,\"slot\":\"a\"", or "". False with errno where it was not
 // written: nothing of it is in the file, and the same line may be written again.
 bool event_line(struct event_lines *lines, const char *event, int64_t at_ns, const char *details);

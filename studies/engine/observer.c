@@ -319,9 +319,14 @@ double observer_probability_a(const struct observer_parameters *parameters,
     return parameters->lapse / 2 + (1 - parameters->lapse) / (1 + exp(-logit_a(parameters, errors)));
 }
 
-static int32_t choose(const struct observer *observer, const struct observer_errors *errors, bool equal)
+// It answers the question: where the tested option is the right answer ("Which one looks worse?"), it looks for
+// the larger error.
+static int32_t choose(const struct observer *observer, const struct observer_errors *seen,
+                      const struct protocol_question *question)
 {
     const struct observer_parameters *p = &observer->parameters;
+    bool equal = question && question->equal, worse = question && question->correct == PROTOCOL_CORRECT_TESTED;
+    const struct observer_errors turned = {{seen->slot[1], seen->slot[0]}}, *errors = worse ? &turned : seen;
     struct random_stream stream = trial_stream(observer, PURPOSE_CHOICE, 0);
     double u = random_unit(&stream);
     if (!equal)
@@ -397,7 +402,7 @@ static void decide(struct observer *observer, const struct machine_view *view,
     if (out->kind == MACHINE_CHOOSE && view->screen == MACHINE_STIMULUS && !view->may_choose)
         out->kind = MACHINE_TOGGLE_KEY; // not seen for long enough
     else if (out->kind == MACHINE_CHOOSE)
-        out->value = choose(observer, errors, view->question && view->question->equal);
+        out->value = choose(observer, errors, view->question);
     else if (out->kind == MACHINE_RATE)
         out->value = view->question ? rate(observer, errors, view) : 0;
     else if (out->kind == MACHINE_START && view->screen == MACHINE_STIMULUS &&

@@ -10,7 +10,9 @@
 //
 // The choice: with d = error of b minus error of a, P(a) = lapse / 2 + (1 - lapse) L(side_bias + ln 3 sign(d)
 // |d / threshold|^slope), L the logistic function. threshold is the difference at which an unbiased observer
-// without lapses takes the better one in 75 % of trials; equal errors give one half by law.
+// without lapses takes the better one in 75 % of trials; equal errors give one half by law. Where the
+// question's right answer is the tested option, it takes the worse one by the same law, with the errors
+// exchanged.
 #ifndef STUDIES_ENGINE_OBSERVER_H
 #define STUDIES_ENGINE_OBSERVER_H
 

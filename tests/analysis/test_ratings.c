@@ -270,7 +270,7 @@ static void what_cannot_be_analysed_is_said(void **state)
     study_file_make("b.db", &(struct study_desc){.bare = true});
     study_file_sql("b.db", rates);
     study_file_sql("b.db", "DELETE FROM rating WHERE trial_id IN (SELECT id FROM made WHERE f <> i % 2)");
-    expect_in_text("b.db", "nobody rated two levels of epsilon, and factors between people are not analysed");
+    expect_in_text("b.db", "nobody rated two levels of epsilon, though 8 of 8 were to");
     expect_in_report("b.db", (const char *const[]){"nobody rated two levels of epsilon", NULL});
     study_file_sql("b.db", "DELETE FROM rating WHERE trial_id IN (SELECT id FROM made WHERE i > 1 OR r > 0)");
     expect_in_text(

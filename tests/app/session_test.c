@@ -192,6 +192,32 @@ static void event_lines_name_stored_rows(void **state)
     assert_string_equal(result->out, "[('choice', 1), ('choice', 2), ('rating', 1)] complete\n");
 }
 
+// What --events names by mistake is left as it was.
+static void events_go_into_no_other_file(void **state)
+{
+    (void)state;
+    static const char *const cases[][3] = {{"a", "a.db", "is the study file"},
+                                           {"new", "new.db", "is the study file"},
+                                           {"a", "p.yaml", "holds something else"}};
+    assert_int_equal(command("cp '" SOURCE_DIR "/studies/protocols/short.yaml' '%s/p.yaml'", folder)->status,
+                     0);
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const struct command_result *result =
+            command("fovstudy run '%s/p.yaml' --db '%s/%s.db' --participant e1 --observer sim:errors='%s/a.db' "
+                    "--display none --events '%s/%s'",
+                    folder, folder, cases[i][0], folder, folder, cases[i][1]);
+        if (result->status != 1 || !strstr(result->err, cases[i][2]))
+            fail_msg("exit %d: %s", result->status, result->err);
+    }
+    assert_int_equal(command("test ! -e '%s/new.db' && cmp '" SOURCE_DIR
+                             "/studies/protocols/short.yaml' '%s/p.yaml'",
+                             folder, folder)
+                         ->status,
+                     0);
+    expect("PRAGMA integrity_check", "ok");
+    expect("SELECT count(*) FROM participant", "1");
+}
+
 // Everything but wall time, as text.
 enum { DUMP = 8192 };
 static void dump(const char *name, char *out)
@@ -305,6 +331,7 @@ int main(void)
         cmocka_unit_test(the_fovea_follows_the_gaze),
         cmocka_unit_test(errors_were_measured_against_the_reference),
         cmocka_unit_test(event_lines_name_stored_rows),
+        cmocka_unit_test(events_go_into_no_other_file),
         cmocka_unit_test(the_same_seed_gives_the_same_rows),
         cmocka_unit_test(others_answer_from_the_measured_errors),
     };

@@ -59,15 +59,31 @@ odd <- i %% 2 == 1; w <- t.test(i[odd] / 2, i[!odd] / 2)
 rows <- list(); of_t("unpaired_t reaction factor odd", w)
 out <- c(out, line(rows[[1]], w$p.value))
 out <- c(out, sprintf("margin cell %s,%.17g", c("0.2", "0.05"), c(tost(6, 22), tost(4, 19))))
-for (margin in c(0.2, 0.3)) {
-  rows <- list()
+even <- function(name, margin, alternative = "two.sided")
   for (cell in list(list("0.2", 11, 22), list("0.05", 9, 19))) {
-    b <- binom.test(cell[[2]], cell[[3]])
-    add(paste("even", margin, "cell", cell[[1]]), cell[[2]] / cell[[3]], b$conf.int[1], b$conf.int[2], b$p.value)
-    equality(paste("even", margin, "equality", cell[[1]]), cell[[2]], cell[[3]], margin)
+    b <- binom.test(cell[[2]], cell[[3]], alternative = alternative)
+    add(paste(name, margin, "cell", cell[[1]]), cell[[2]] / cell[[3]], b$conf.int[1], b$conf.int[2], b$p.value)
+    equality(paste(name, margin, "equality", cell[[1]]), cell[[2]], cell[[3]], margin)
   }
+for (margin in c(0.2, 0.25, 0.3)) {
+  rows <- list()
+  even("even", margin)
   out <- c(out, mapply(line, rows, holm_of(rows)))
 }
+# "both": planned with two margins. "rated": the same among more that was planned. "less": one-sided tests of a difference, which do not exclude one beyond
+# the margin, so that all four count.
+rows <- list()
+even("both", 0.3)
+even("both", 0.25)
+out <- c(out, mapply(line, rows, holm_of(rows)))
+rows <- list()
+even("rated", 0.25)
+of_t("rated 0.25 paired_t rating order test", t.test(change[1:11]))
+of_t("rated 0.25 paired_t rating order regular", t.test(change[12:20]))
+out <- c(out, mapply(line, rows, holm_of(rows)))
+rows <- list()
+even("less", 0.25, "less")
+out <- c(out, mapply(line, rows, p.adjust(sapply(rows, function(r) r[[2]][4]), "holm")))
 # Nine choices of each person in one cell (study_desc.several): people are tested.
 shares <- ((i <= 6) + pmin(8, (5 * i) %% 9)) / 9
 rows <- list()
@@ -79,6 +95,16 @@ b <- binom.test(4, 19)
 add("several cell 0.05", 4 / 19, b$conf.int[1], b$conf.int[2], b$p.value)
 equality("several equality 0.05", 4, 19, 0.1)
 out <- c(out, mapply(line, rows, holm_of(rows)))
-p <- c(tost(11, 22), tost(9, 19)) # as fovstats choices has them: over its cells
-out <- c(out, sprintf("choices equality cell %s,%.17g,%.17g", c("0.2", "0.05"), p, p.adjust(p, "holm")))
+# Toggles (70 i + 7 cell) %% 11. Strays: of persons 1 to 14 the odd were to see cell 1 alone and the even cell 2, of 15 to
+# 22 both, 20 to 22 with no valid answer in cell 2; who has both is left out. Dropouts: all were to see both, persons 9 to
+# 22 stopped before cell 2.
+a <- (70 * i + 7) %% 11; b <- (70 * i + 14) %% 11
+rows <- list()
+of_t("strays unpaired_t toggles", t.test(a[(i <= 14 & odd) | i >= 20], b[i <= 14 & !odd]))
+out <- c(out, line(rows[[1]], rows[[1]][[2]][4]))
+rows <- list()
+of_t("dropouts paired_t toggles", t.test((a - b)[1:8]))
+f <- t.test((a - b)[1:8])
+add("dropouts anova toggles", f$statistic^2 / (f$statistic^2 + 7), NA, NA, pf(f$statistic^2, 1, 7, lower.tail = FALSE))
+out <- c(out, mapply(line, rows, holm_of(rows)))
 writeLines(c("row,estimate,low,high,p,holm", gsub("NA", "nan", out)), "planned.csv")

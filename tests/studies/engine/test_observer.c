@@ -83,16 +83,24 @@ static void run_session(const struct observer_parameters *parameters, const stru
     plan_destroy(plan);
 }
 
-static void run_many(const struct observer_parameters *parameters, uint32_t sessions, int64_t frame_ns,
-                     struct tally *out)
+static void run_asking(const struct observer_parameters *parameters, uint32_t sessions, int64_t frame_ns,
+                       enum protocol_correct correct, struct tally *out)
 {
     char error[PROTOCOL_ERROR] = "";
     struct protocol *protocol = sample_design("[atrium, town]", SAMPLE_NINE, error, sizeof error);
     assert_string_equal(error, "");
     *out = (struct tally){0};
+    for (uint32_t i = 0; i < protocol->question_count; i++)
+        protocol->questions[i].correct = correct;
     for (uint32_t i = 0; i < sessions; i++)
         run_session(parameters, protocol, 11, i, frame_ns, out);
     protocol_destroy(protocol);
+}
+
+static void run_many(const struct observer_parameters *parameters, uint32_t sessions, int64_t frame_ns,
+                     struct tally *out)
+{
+    run_asking(parameters, sessions, frame_ns, PROTOCOL_NO_CORRECT, out);
 }
 
 #define SLOW INT64_C(62500000) // 16 Hz, the demonstration's
@@ -119,6 +127,21 @@ static void test_it_recovers_its_psychometric_function(void **state)
         binomial(tally.better[i], tally.by_level[i], p);
     }
     binomial(tally.slot_a, tally.choices, 0.5); // sides are balanced and there is no bias
+}
+
+// "Which one looks worse?" has the tested option as its right answer.
+static void test_it_answers_the_question(void **state)
+{
+    (void)state;
+    struct observer_parameters parameters;
+    struct tally better, worse;
+    observer_defaults(&parameters);
+    run_asking(&parameters, 200, SLOW, PROTOCOL_CORRECT_REFERENCE, &better);
+    run_asking(&parameters, 200, SLOW, PROTOCOL_CORRECT_TESTED, &worse);
+    for (int i = 2; i < 5; i++) {
+        assert_true(better.better[i] > 0.6 * better.by_level[i]);
+        assert_true(worse.better[i] < 0.4 * worse.by_level[i]);
+    }
 }
 
 static void test_bias_lapses_and_certainty(void **state)
@@ -232,6 +255,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_the_code_makes_the_observer),
         cmocka_unit_test(test_it_recovers_its_psychometric_function),
+        cmocka_unit_test(test_it_answers_the_question),
         cmocka_unit_test(test_bias_lapses_and_certainty),
         cmocka_unit_test(test_times_and_toggles_suit_the_demonstration),
         cmocka_unit_test(test_ratings_follow_the_latent_normal),
