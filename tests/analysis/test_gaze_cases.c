@@ -25,7 +25,7 @@ static void accuracy_has_no_region(void **state)
     (void)state;
     gaze_said_make("1", "8", "250", "90");
     study_file_sql("s.db", "UPDATE gaze SET valid = 1, y_deg = 0, x_deg = iif(id <= 1000, 0.2, 15);"
-                           "UPDATE frame SET target_x_deg = 0, target_y_deg = 0;"
+                           "UPDATE frame SET target_x_deg = 0, target_y_deg = 0, gaze_id = NULL;"
                            "DELETE FROM gaze WHERE id < 11 OR id > 1990;"); // the frames' light is 11 ms late
     struct program_result r = gaze_said("--json");
     gaze_said_close(gaze_said_number(&r, "accuracy_deg"), 7.6, 1e-9);
