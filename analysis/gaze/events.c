@@ -27,6 +27,29 @@ void gaze_events(const struct gaze_rules *rules, const struct gaze_point *points
         gaze_search_dispersion(&search);
 }
 
+// Where samples are missing a velocity is taken over a longer time, and flattened. A sample that is faster than
+// both its neighbours, all three over short times, is the peak of a velocity that rises and falls once; one
+// beside a gap need not be, so that the longest of the three times says what the peak is worth.
+static void find_peak(const struct gaze_search *s, struct gaze_event *event)
+{
+    const double window_ms = s->rules->peak_ms;
+    size_t fastest = event->first;
+    double peak = -1, span, longest = 0;
+    for (size_t i = event->first; i <= event->last; i++) {
+        double velocity = gaze_velocity_at(s->points, s->count, window_ms, i, &span);
+        if (velocity > peak) {
+            peak = velocity;
+            fastest = i;
+        }
+    }
+    for (size_t i = fastest ? fastest - 1 : 0; i <= fastest + 1 && i < s->count; i++) {
+        gaze_velocity_at(s->points, s->count, window_ms, i, &span);
+        longest = fmax(longest, span);
+    }
+    event->peak_span_ms = longest;
+    event->peak_deg_s = longest <= GAZE_VMAX_SPAN_MS ? peak : (double)NAN;
+}
+
 void gaze_found(const struct gaze_search *s, enum gaze_kind kind, size_t first, size_t last)
 {
     const struct gaze_point *from = &s->points[first], *to = &s->points[last];
@@ -42,6 +65,7 @@ void gaze_found(const struct gaze_search *s, enum gaze_kind kind, size_t first, 
                                .y_deg = to->y_deg,
                                .amplitude_deg = NAN,
                                .peak_deg_s = NAN,
+                               .peak_span_ms = NAN,
                                .cut = first == 0 || last + 1 == s->count};
     if (kind == GAZE_FIXATION) {
         event.x_deg = event.y_deg = 0;
@@ -53,9 +77,7 @@ void gaze_found(const struct gaze_search *s, enum gaze_kind kind, size_t first, 
         event.y_deg /= (double)(last - first + 1);
     } else {
         event.amplitude_deg = gaze_angle_deg(from, to);
-        for (size_t i = first; i <= last; i++)
-            event.peak_deg_s =
-                fmax(event.peak_deg_s, gaze_velocity_at(s->points, s->count, s->rules->peak_ms, i));
+        find_peak(s, &event);
     }
     s->each(s->user, &event, s->points);
 }

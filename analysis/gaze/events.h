@@ -49,7 +49,9 @@ struct gaze_event {
     int64_t start_ns, end_ns; // times of these
     double x_deg, y_deg;      // a fixation's mean, a saccade's last sample
     double amplitude_deg;     // saccade: from its first to its last sample; else NaN
-    double peak_deg_s;        // saccade: the fastest sample's velocity over peak_ms; else NaN
+    double peak_deg_s;        // saccade: the fastest sample's velocity over peak_ms; else NaN, also where
+                              // peak_span_ms is above GAZE_VMAX_SPAN_MS
+    double peak_span_ms;      // saccade: the time it and its neighbours' are really taken over, the longest
     bool cut;
 };
 

@@ -16,8 +16,10 @@ struct gaze_search {
 void gaze_search_velocity(const struct gaze_search *search);
 void gaze_search_dispersion(const struct gaze_search *search);
 
-// The velocity of sample `i`, as gaze_velocities() has it.
-double gaze_velocity_at(const struct gaze_point *points, size_t count, double window_ms, size_t i);
+// The velocity of sample `i`, as gaze_velocities() has it, of at least two samples, and the time it is taken
+// over.
+double gaze_velocity_at(const struct gaze_point *points, size_t count, double window_ms, size_t i,
+                        double *out_span_ms);
 
 // Hands the event on, unless it is too short.
 void gaze_found(const struct gaze_search *search, enum gaze_kind kind, size_t first, size_t last);

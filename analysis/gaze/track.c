@@ -66,7 +66,8 @@ static void add_event(void *user, const struct gaze_event *event, const struct g
     } else {
         gaze_running_add(&q->saccade_ms, (double)(event->end_ns - event->start_ns) / 1e6);
         gaze_running_add(&q->amplitude_deg, event->amplitude_deg);
-        gaze_running_add(&q->peak_deg_s, event->peak_deg_s);
+        if (!isnan(event->peak_deg_s))
+            gaze_running_add(&q->peak_deg_s, event->peak_deg_s);
     }
     if (track->each)
         track->each(track->user, event, points);

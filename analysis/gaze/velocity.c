@@ -21,7 +21,8 @@ void gaze_velocities(const struct gaze_point *points, size_t count, double windo
     }
 }
 
-double gaze_velocity_at(const struct gaze_point *points, size_t count, double window_ms, size_t i)
+double gaze_velocity_at(const struct gaze_point *points, size_t count, double window_ms, size_t i,
+                        double *out_span_ms)
 {
     double half_ns = window_ms * 1e6 / 2;
     size_t from = i ? i - 1 : 0, to = i + 1 < count ? i + 1 : i;
@@ -29,8 +30,8 @@ double gaze_velocity_at(const struct gaze_point *points, size_t count, double wi
         from--;
     while (to + 1 < count && (double)(points[to + 1].time_ns - points[i].time_ns) <= half_ns)
         to++;
-    return gaze_angle_deg(&points[from], &points[to]) /
-           ((double)(points[to].time_ns - points[from].time_ns) / 1e9);
+    *out_span_ms = (double)(points[to].time_ns - points[from].time_ns) / 1e6;
+    return gaze_angle_deg(&points[from], &points[to]) / (*out_span_ms / 1e3);
 }
 
 double gaze_velocity_span_ms(double interval_ms, double window_ms)

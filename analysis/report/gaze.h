@@ -70,9 +70,11 @@ struct gaze_record {
     double slowest_hz, fastest_hz;           // of a person's sittings; NaN where none is measured
     double nominal_hz;                       // at which samples are due; NaN where it is not known
     double missing;                          // samples that did not come; NaN where the rate is not known
-    size_t saccade_count;                    // complete ones; a person's only of sittings with known peaks
+    size_t saccade_count;                    // complete ones whose peak is known
     double *amplitude, *peak;                // owned
-    double span_ms, span_hz;                 // that a peak is taken over, at which rate; NaN: not known
+    double *span;                            // that each peak is really taken over; owned; not of people
+    double span_ms, span_hz;                 // that a peak is taken over where no sample is missing, at which
+                                             // rate; NaN: not known
     struct stat_main_sequence main_sequence; // of people only; NaN where the span is too long
 };
 
@@ -128,7 +130,7 @@ int64_t gaze_flat_samples(const struct gaze_report *report);
 int64_t gaze_lost_frames(const struct gaze_report *report, int64_t *out_all);
 
 // What is measured of saccades but cannot be estimated at the tracker's rate.
-enum { GAZE_REASON_SIZE = 96, GAZE_WORDS_SIZE = 640 };
+enum { GAZE_REASON_SIZE = 96, GAZE_WORDS_SIZE = 960 };
 enum gaze_part { GAZE_VMAX, GAZE_C, GAZE_POWER };
 // Why a person's part of the main sequence is not estimable; false where it is.
 bool gaze_sequence_problem(const struct gaze_record *record, enum gaze_part part, char out[GAZE_REASON_SIZE]);

@@ -27,6 +27,7 @@ void gaze_record_finish(struct gaze_record *record)
         gaze_bins_finish(&record->targets[i].distances);
     free(record->amplitude);
     free(record->peak);
+    free(record->span);
     *record = (struct gaze_record){.eye = 0};
 }
 
@@ -61,6 +62,25 @@ static double missing_at_edges(const struct gaze_bins *edges, double due_ms)
     return missing;
 }
 
+// One rule for mean and main sequence. Of a tracker fast enough for c, a peak that samples are missing at would
+// bend the curve: it must tell c itself.
+static void keep_known_peaks(struct gaze_record *record, double due_ms)
+{
+    // a missing sample adds an interval, an error of time less than half of one
+    bool shape = record->span_ms <= GAZE_SHAPE_SPAN_MS;
+    double longest = shape ? record->span_ms + due_ms / 2 : GAZE_VMAX_SPAN_MS;
+    size_t kept = 0;
+    record->quality.peak_deg_s = (struct gaze_running){.n = 0};
+    for (size_t i = 0; i < record->saccade_count; i++)
+        if (record->span_ms <= GAZE_VMAX_SPAN_MS && record->span[i] <= longest) {
+            record->amplitude[kept] = record->amplitude[i];
+            record->peak[kept] = record->peak[i];
+            record->span[kept++] = record->span[i];
+            gaze_running_add(&record->quality.peak_deg_s, record->peak[i]);
+        }
+    record->saccade_count = kept;
+}
+
 void gaze_record_close(struct gaze_record *record, const struct gaze_options *options)
 {
     double due_ms = 1000 / record->nominal_hz;
@@ -69,8 +89,7 @@ void gaze_record_close(struct gaze_record *record, const struct gaze_options *op
                                  : (double)NAN;
     record->span_hz = record->nominal_hz;
     record->span_ms = gaze_velocity_span_ms(due_ms, options->rules.peak_ms);
-    if (!(record->span_ms <= GAZE_VMAX_SPAN_MS))
-        record->quality.peak_deg_s = (struct gaze_running){.n = 0};
+    keep_known_peaks(record, due_ms);
 }
 
 static bool join_target(struct gaze_record *record, const struct gaze_target *from)
@@ -113,8 +132,7 @@ static void join_span(struct gaze_record *to, const struct gaze_record *from)
 
 bool gaze_record_join(struct gaze_record *to, const struct gaze_record *from)
 {
-    bool peaks = from->span_ms <= GAZE_VMAX_SPAN_MS;
-    size_t saccades = peaks ? from->saccade_count : 0;
+    size_t saccades = from->saccade_count;
     join_span(to, from);
     gaze_quality_join(&to->quality, &from->quality);
     gaze_bins_join(&to->edges, &from->edges);

@@ -174,9 +174,11 @@ static bool add_sample(void *user, const struct store_gaze_sample *row)
 static bool keep_saccade(struct gaze_record *record, const struct gaze_event *event)
 {
     if (!sample_grow(&record->amplitude, record->saccade_count, sizeof record->amplitude[0]) ||
-        !sample_grow(&record->peak, record->saccade_count, sizeof record->peak[0]))
+        !sample_grow(&record->peak, record->saccade_count, sizeof record->peak[0]) ||
+        !sample_grow(&record->span, record->saccade_count, sizeof record->span[0]))
         return false;
     record->amplitude[record->saccade_count] = event->amplitude_deg;
+    record->span[record->saccade_count] = event->peak_span_ms;
     record->peak[record->saccade_count++] = event->peak_deg_s;
     return true;
 }

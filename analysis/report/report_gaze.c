@@ -189,7 +189,7 @@ static void sequence_table(const struct report *r)
     for (size_t i = 0; i < r->gaze.person_count; i++) {
         const struct gaze_record *person = &r->gaze.people[i];
         who(r, person);
-        html_cell(out, "td", "%zu", person->main_sequence.n);
+        html_cell(out, "td", "%zu of %" PRId64, person->main_sequence.n, person->quality.saccade_ms.n);
         sequence_row(out, person);
         fputs("</tr>\n", out);
     }

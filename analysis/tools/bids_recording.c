@@ -34,7 +34,8 @@ static const struct column event_columns[] = {
     {"x_coordinate", "deg", "A fixation's mean, a saccade's last sample, " HEAD "."},
     {"y_coordinate", "deg", "The same upwards."},
     {"amplitude", "deg", "Angle between a saccade's first and last sample; n/a for a fixation."},
-    {"peak_velocity", "deg/s", "Of a saccade's fastest sample; n/a for a fixation."},
+    {"peak_velocity", "deg/s",
+     "Of a saccade's fastest sample; n/a for a fixation, and where the samples are too far apart."},
     {"cut", NULL,
      "1: it lies at a gap or at a trial's end, so that duration and amplitude are lower bounds; 0: whole."},
     {"trial_id", NULL, "The trial it belongs to; n/a between trials."},
@@ -99,7 +100,7 @@ static bool describe_samples(struct bids *b, size_t run, size_t eye, const struc
 static bool describe_events(struct bids *b, size_t run, size_t eye)
 {
     struct gaze_options options = gaze_options(GAZE_IVT);
-    char name[BIDS_PATH_SIZE], text[512];
+    char name[BIDS_PATH_SIZE], text[640];
     bids_recording_name(b, run, eye, "physioevents.json", name);
     FILE *out = bids_open(b, name);
     if (!out)
@@ -108,9 +109,11 @@ static bool describe_events(struct bids *b, size_t run, size_t eye)
              "Fixations and saccades found by fovstats " FOVSTUDY_VERSION
              ", not by the tracker: I-VT (Salvucci & "
              "Goldberg 2000; Olsen 2012), saccades faster than %g deg/s over %g ms, fixations of at least %g "
-             "ms; a peak velocity is over %g ms, at least between a sample's neighbours.",
+             "ms; a peak velocity is over %g ms, at least between a sample's neighbours; where that is over "
+             "more than %g ms, as of slow trackers "
+             "and beside missing samples, it is n/a.",
              options.rules.velocity_deg_s, options.rules.window_ms, options.rules.min_fixation_ms,
-             options.rules.peak_ms);
+             options.rules.peak_ms, GAZE_VMAX_SPAN_MS);
     struct json json = {out, false};
     json_open(&json, NULL, '{');
     json_text(&json, "TaskName", task_of(b, run));

@@ -40,6 +40,7 @@ static void sequence_json(struct json *json, const struct gaze_record *r)
     char words[GAZE_REASON_SIZE];
     json_open(json, "main_sequence", '{');
     json_integer(json, "saccades", (int64_t)m->n);
+    json_integer(json, "saccades_complete", r->quality.saccade_ms.n);
     json_number(json, "peak_span_ms", r->span_ms);
     for (int i = 0; i < 3; i++)
         if (gaze_sequence_problem(r, (enum gaze_part)i, words))

@@ -140,13 +140,14 @@ static bool print_sequences(const struct sample *sample, const struct gaze_repor
     char ci[32], words[GAZE_WORDS_SIZE];
     snprintf(ci, sizeof ci, "%g %% CI", 100 * gaze->options.conf);
     const char *const headings[] = {
-        "<participant", "<eye", "saccades", "Vmax", ci, "c", ci, "k", ci, "b", ci, "<", NULL};
+        "<participant", "<eye", "saccades", "of", "Vmax", ci, "c", ci, "k", ci, "b", ci, "<", NULL};
     struct table t;
     table_init(&t, headings);
     for (size_t i = 0; i < gaze->person_count; i++) {
         const struct stat_main_sequence *m = &gaze->people[i].main_sequence;
         who(&t, sample, &gaze->people[i]);
         table_cell(&t, "%zu", m->n);
+        table_cell(&t, "%" PRId64, gaze->people[i].quality.saccade_ms.n);
         number(&t, "%.0f", m->vmax.value);
         interval(&t, "%.0f", m->vmax.low, m->vmax.high);
         number(&t, "%.2f", m->c.value);

@@ -266,11 +266,8 @@ static bool add_input(struct merging *m)
     struct store_reader *reader = store_reader_open(m->input->path, m->error, m->error_size);
     if (!reader)
         return false;
-    int version = store_reader_version(reader);
+    m->version = store_reader_version(reader);
     store_reader_close(reader);
-    if (version < STORE_VERSION)
-        return merge_fail(m, "%s: is of an older version (%d, now %d); open it once with fovstudy resume",
-                          m->input->path, version, STORE_VERSION);
     return attach(m) && merge_run(m, "BEGIN") && check_input(m) && move_offset(m) && merge_choose(m) &&
            merge_copy(m) && note_source(m) && merge_run(m, "COMMIT") && merge_run(m, "DETACH src");
 }

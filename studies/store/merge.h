@@ -9,7 +9,7 @@
 // none of this. Inputs are only read. Numbers that decide trial orders are kept, so that two laboratories'
 // first participants both have number 1.
 //
-// Refused, with a sentence: a file that cannot be read, is damaged, or is of another version; people beside
+// Refused, with a sentence: a file that cannot be read, is damaged, or is of a newer version; people beside
 // simulated observers; several protocols (unless new_protocol); several seeds of one protocol; a code that two
 // files have without a session in common (unless a laboratory's name tells them apart); a person that was
 // erased from one of two copies (fovstudy forget) and is still in the other; an output that exists.

@@ -1,5 +1,6 @@
 // Copies the chosen sessions of an input, with every id moved past those that the output has.
 #include "studies/store/merge_private.h"
+#include "studies/store/migrate.h"
 
 #define TAKEN "IN (SELECT id FROM temp.take)"
 #define TAKEN_TRIALS "IN (SELECT t.id FROM src.trial AS t WHERE t.session_id IN (SELECT id FROM temp.take))"
@@ -70,7 +71,7 @@ static const char *const tables[] = {
         "condition_id") ", phase, fade_level, start_ns, cpu_us, gpu_us, present_ns, present_estimated, late,"
                         " gaze_id + ?1, gaze_age_us, fovea, fovea_source, effective, target_x_deg, "
                         "target_y_deg, head_pose, shaded_px,"
-                        " triangles, target_m FROM src.frame WHERE session_id " TAKEN " ORDER BY id",
+                        " triangles, target_m FROM temp.src_frame WHERE session_id " TAKEN " ORDER BY id",
     "INSERT INTO main.event SELECT id + ?1, session_id + ?1, segment_id + ?1, trial_id + ?1, at_ns, kind, "
     "detail "
     "FROM src.event WHERE session_id " TAKEN " ORDER BY id",
@@ -132,13 +133,23 @@ static bool say_errors(struct merging *m)
     return ok || merge_fail_sqlite(m);
 }
 
+// What an older version lacks is NULL.
+static bool view_frames(struct merging *m)
+{
+    char *sql = sqlite3_mprintf("CREATE TEMP VIEW src_frame AS SELECT %s FROM src.frame",
+                                migrate_frame_columns(m->version));
+    bool ok = sql ? merge_run(m, sql) : merge_fail(m, "not enough memory");
+    sqlite3_free(sql);
+    return ok;
+}
+
 bool merge_copy(struct merging *m)
 {
-    bool ok = true;
+    bool ok = view_frames(m);
     for (size_t i = 0; ok && maps[i]; i++)
         ok = merge_run(m, maps[i]);
     ok = ok && merge_attributes(m) && add_people(m) && say_errors(m);
     for (size_t i = 0; ok && tables[i]; i++)
         ok = merge_run(m, tables[i]);
-    return ok;
+    return ok && merge_run(m, "DROP VIEW temp.src_frame");
 }

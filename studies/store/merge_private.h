@@ -10,6 +10,7 @@
 struct merging {
     const struct store_merge_desc *desc;
     const struct store_merge_input *input; // at hand
+    int version;                           // of its schema
     sqlite3 *db;                           // owned
     int64_t offset;                        // added to every id of the input
     long long twice;

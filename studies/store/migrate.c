@@ -2,6 +2,11 @@
 
 #include <stdio.h>
 
+const char *migrate_frame_columns(int version)
+{
+    return version < 2 ? "*, NULL AS target_m" : "*";
+}
+
 static int read_number(sqlite3 *db, const char *sql, int64_t *out)
 {
     sqlite3_stmt *statement = NULL;

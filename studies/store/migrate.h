@@ -23,6 +23,9 @@ enum migrate_state {
     MIGRATE_OLDER,   // ours, and the ladder leads up
 };
 
+// Of a file of `version`, what to select from its frames so that they have the columns of ours.
+const char *migrate_frame_columns(int version);
+
 // Looks without writing. Refuses another program's database and a newer version.
 enum store_result migrate_identify(struct store *store, const struct migrate_ladder *ladder,
                                    enum migrate_state *out_state, struct store_error *error);

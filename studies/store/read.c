@@ -65,17 +65,16 @@ static bool pragma_int(struct store_reader *reader, const char *sql, int *out)
     return code == SQLITE_ROW;
 }
 
-// What each version lacks of the next one, in the place of the table: a name without a schema's is looked for
-// among the temporary ones first.
-static const char *const missing[STORE_VERSION - 1] = {
-    "CREATE TEMP VIEW frame AS SELECT *, NULL AS target_m FROM main.frame",
-};
-
+// What an older version lacks, in the place of the table: a name without a schema's is looked for among the
+// temporary ones first. So whole() names the schema: a view has no rows to check.
 static bool complete_older(struct store_reader *reader)
 {
-    int code = sqlite3_exec(reader->db, "PRAGMA query_only = OFF", NULL, NULL, NULL);
-    for (int i = reader->version - 1; i < STORE_VERSION - 1 && code == SQLITE_OK; i++)
-        code = sqlite3_exec(reader->db, missing[i], NULL, NULL, NULL);
+    char *view = sqlite3_mprintf("CREATE TEMP VIEW frame AS SELECT %s FROM main.frame",
+                                 migrate_frame_columns(reader->version));
+    int code = view ? sqlite3_exec(reader->db, "PRAGMA query_only = OFF", NULL, NULL, NULL) : SQLITE_NOMEM;
+    if (code == SQLITE_OK)
+        code = sqlite3_exec(reader->db, view, NULL, NULL, NULL);
+    sqlite3_free(view);
     if (code == SQLITE_OK)
         code = sqlite3_exec(reader->db, "PRAGMA query_only = ON", NULL, NULL, NULL);
     if (code != SQLITE_OK)
@@ -101,8 +100,9 @@ static bool is_study(struct store_reader *reader)
         return false;
     }
     if (version < 1) {
-        store_reader_fail(reader, "%s: is of an older version (%d, now %d); open it once with fovstudy resume",
-                          reader->path, version, STORE_VERSION);
+        store_reader_fail(
+            reader, "%s: the study file is damaged (its version is %d, but the first was 1); use a backup",
+            reader->path, version);
         return false;
     }
     reader->version = version;
@@ -213,12 +213,9 @@ bool store_reader_rises(struct store_reader *reader, int64_t id, int64_t *last)
     return rises;
 }
 
-// SQLite finds a row by its index without comparing the two.
-static bool whole(struct store_reader *reader, const char *table)
+// `sql` counts the faults of the table ?1.
+static bool faultless(struct store_reader *reader, const char *sql, const char *table)
 {
-    static const char sql[] =
-        "SELECT (SELECT count(*) FROM pragma_integrity_check(?1) WHERE integrity_check <> 'ok') + "
-        "(SELECT count(*) FROM pragma_foreign_key_check(?1))";
     sqlite3_stmt *statement = NULL;
     int64_t faults = 0;
     int code = sqlite3_prepare_v2(reader->db, sql, -1, &statement, NULL);
@@ -237,6 +234,23 @@ static bool whole(struct store_reader *reader, const char *table)
             "%s: the study file is damaged (table %s); use a backup, or try sqlite3's .recover on a copy",
             reader->path, table);
     return code == SQLITE_ROW && faults == 0;
+}
+
+// SQLite finds a row by its index without comparing the two.
+static bool whole(struct store_reader *reader, const char *table)
+{
+    static const char sql[] =
+        "SELECT (SELECT count(*) FROM pragma_integrity_check(?1, 'main') WHERE integrity_check <> 'ok') + "
+        "(SELECT count(*) FROM pragma_foreign_key_check(?1, 'main'))";
+    return faultless(reader, sql, table);
+}
+
+bool store_reader_refers(struct store_reader *reader, const char *table, bool *known)
+{
+    static const char sql[] = "SELECT EXISTS (SELECT 1 FROM pragma_foreign_key_check(?1, 'main'))";
+    reader->error[0] = '\0';
+    *known = *known || faultless(reader, sql, table);
+    return *known;
 }
 
 bool store_reader_whole(struct store_reader *reader, bool logs)

@@ -164,7 +164,8 @@ bool store_read_audit_frames(struct store_reader *reader, store_audit_frame_fn e
         " f.gaze_id, f.gaze_age_us, f.fovea,"
         " " NOT_AS_ASKED(
             "f.") ", f.id FROM frame f LEFT JOIN condition c ON c.id = f.condition_id ORDER BY f.id";
-    return read_all(reader, sql, frame_row, &(struct call){.user = user, .frame = each, .id = 17});
+    return store_reader_refers(reader, "frame", &reader->frames_refer) &&
+           read_all(reader, sql, frame_row, &(struct call){.user = user, .frame = each, .id = 17});
 }
 
 bool store_read_gaze_after(struct store_reader *reader, int64_t gaze_id, int64_t segment_id,

@@ -74,7 +74,8 @@ bool store_read_gaze(struct store_reader *reader, store_gaze_sample_fn each, voi
 {
     static const char sql[] = "SELECT session_id, segment_id, trial_id, device_ns, host_ns, eye, x_deg, y_deg,"
                               " valid, id FROM gaze ORDER BY id";
-    return read_all(reader, sql, 0, sample_row, &(struct call){.user = user, .sample = each, .id = 9}) &&
+    return store_reader_refers(reader, "gaze", &reader->gaze_refers) &&
+           read_all(reader, sql, 0, sample_row, &(struct call){.user = user, .sample = each, .id = 9}) &&
            store_reader_unchanged(reader);
 }
 
@@ -142,7 +143,8 @@ bool store_read_gaze_uses(struct store_reader *reader, store_gaze_use_fn each, v
     static const char sql[] =
         "SELECT session_id, gaze_age_us, present_ns - start_ns, present_estimated, fovea_source = 'lost',"
         " phase = 'stimulus' AND fovea_source IN ('gaze', 'lost'), id FROM frame ORDER BY id";
-    return read_all(reader, sql, 0, use_row, &(struct call){.user = user, .use = each, .id = 6}) &&
+    return store_reader_refers(reader, "frame", &reader->frames_refer) &&
+           read_all(reader, sql, 0, use_row, &(struct call){.user = user, .use = each, .id = 6}) &&
            store_reader_unchanged(reader);
 }
 

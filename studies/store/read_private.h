@@ -11,10 +11,11 @@ struct store_reader {
     sqlite3 *db;
     char *path;
     char error[512];
-    int version;         // of the file's schema
-    bool at_rest;        // nobody wrote when it was opened
-    struct stat info;    // as it was then
-    sqlite3_stmt *after; // of store_read_gaze_after; NULL before the first
+    int version;                    // of the file's schema
+    bool at_rest;                   // nobody wrote when it was opened
+    struct stat info;               // as it was then
+    bool frames_refer, gaze_refers; // store_reader_refers() has said so
+    sqlite3_stmt *after;            // of store_read_gaze_after; NULL before the first
 };
 
 void store_reader_fail(struct store_reader *reader, const char *format, ...)
@@ -25,6 +26,10 @@ void store_reader_fail_sqlite(struct store_reader *reader, int code);
 // Of a scan in the order of ids, from *last INT64_MIN on: false with a sentence where an id does not rise,
 // which is a page that was overwritten. SQLite hands such rows out.
 bool store_reader_rises(struct store_reader *reader, int64_t id, int64_t *last);
+
+// Of frame or gaze: false with a sentence where a row refers to one that is not there. It would be taken for a
+// row of no trial or no condition. `known` keeps a yes: the check takes as long as reading half of the rows.
+bool store_reader_refers(struct store_reader *reader, const char *table, bool *known);
 
 // Of an exclusion: it takes ratings out and leaves a choice alone (schema.sql).
 #define RATINGS_ONLY(exclusion) "substr(" exclusion ".rule, -12) = ':rating_pair'"

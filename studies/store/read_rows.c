@@ -268,7 +268,8 @@ bool store_read_frames(struct store_reader *reader, store_frame_fn each, void *u
         "f.phase, f.start_ns, f.cpu_us,"
         " f.gpu_us, f.late, f.gaze_age_us, f.shaded_px, g.clock = 'simulated', f.attempt, f.id"
         " FROM frame f LEFT JOIN segment g ON g.id = f.segment_id ORDER BY f.id";
-    return read_rows(reader, sql, frame_row, &(struct call){.user = user, .frame = each, .id = 14});
+    return store_reader_refers(reader, "frame", &reader->frames_refer) &&
+           read_rows(reader, sql, frame_row, &(struct call){.user = user, .frame = each, .id = 14});
 }
 
 static bool exclusion_row(sqlite3_stmt *s, const struct call *call)

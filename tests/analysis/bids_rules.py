@@ -192,11 +192,12 @@ if len(sys.argv) > 3:
     for name in names:
         if name.endswith("_physioevents.tsv.gz"):
             eye = load(name.replace("physioevents.tsv.gz", "physio.json"))["RecordedEye"].replace("cyclopean", "both")
-            for onset, duration, kind, x, y, *_, cut, trial in compressed(name, load(name[:-7] + ".json"))[1]:
-                found[trial, eye, kind, onset] = (1000 * float(duration), float(x), float(y), float(cut))
+            for onset, duration, kind, x, y, *size, cut, trial in compressed(name, load(name[:-7] + ".json"))[1]:
+                found[trial, eye, kind, onset] = (1000 * float(duration), float(x), float(y), float(cut),
+                                                    *(0 if v == "n/a" else float(v) for v in size))
     for row in csv.DictReader(open(sys.argv[3])):
         event = found.pop((row["trial"], row["eye"], row["kind"], row["start_ns"]), None)
-        want = [float(row[key]) for key in ("duration_ms", "x_deg", "y_deg", "cut")]
+        want = [float(row[key] or 0) for key in ("duration_ms", "x_deg", "y_deg", "cut", "amplitude_deg", "peak_deg_s")]
         if not event or any(not math.isclose(a, b, rel_tol=1e-5, abs_tol=1e-9) for a, b in zip(event, want)):
             faults.append(f"event {row}: exported as {event}")
     if any(trial != "n/a" for trial, *_ in found):

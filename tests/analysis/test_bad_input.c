@@ -27,7 +27,7 @@ static void what_is_no_study(void **state)
         {"text.db", "text.db: is not a study file (not an SQLite database)"},
         {"other.db", "other.db: is another program's database"},
         {"newer.db", "newer.db: was written by a newer program (version 999"},
-        {"older.db", "older.db: is of an older version (0, now 2); open it once with fovstudy resume"},
+        {"older.db", "older.db: the study file is damaged (its version is 0, but the first was 1)"},
     };
     damaged_file_bytes("nothing.db", 0, 0);
     damaged_file_bytes("zeros.db", 0, 20000);
@@ -60,14 +60,15 @@ static void damaged_studies(void **state)
         }
 }
 
-// Samples and frames that are there twice, in place of others.
+// Samples and frames that are there twice, in place of others; that refer to a condition or a trial that is
+// not there, and so are no gray frames and no samples between trials.
 static void damaged_logs(void **state)
 {
     (void)state;
     static const enum subcommand of_frames[] = {FRAMES, AUDIT, GAZE, EVENTS, REPORT, EXPORT, MERGE},
                                  of_gaze[] = {GAZE, EVENTS, REPORT, EXPORT, MERGE};
-    const char *names[] = {"frames.db", "gaze.db"};
-    for (int i = 0; i < 2; i++) {
+    const char *names[] = {"frames.db", "gaze.db", "noframes.db", "nogaze.db"};
+    for (int i = 0; i < 4; i++) {
         struct program_result r = program_run(
             (const char *const[]){BUILD_DIR "/tests/gaze_study", names[i], "2", "2", "3", "120", "90", NULL},
             NULL);
@@ -78,10 +79,17 @@ static void damaged_logs(void **state)
     subcommand_works(GAZE, "gaze.db");
     damaged_file_twice("frames.db", "frame");
     damaged_file_twice("gaze.db", "gaze");
-    for (size_t i = 0; i < countof(of_frames); i++)
+    study_file_sql("noframes.db",
+                   "PRAGMA foreign_keys = OFF; UPDATE frame SET condition_id = 999 WHERE id = 70");
+    study_file_sql("nogaze.db", "PRAGMA foreign_keys = OFF; UPDATE gaze SET trial_id = 999 WHERE id = 70");
+    for (size_t i = 0; i < countof(of_frames); i++) {
         subcommand_fails(of_frames[i], "frames.db", "frames.db: the study file is damaged");
-    for (size_t i = 0; i < countof(of_gaze); i++)
+        subcommand_fails(of_frames[i], "noframes.db", "noframes.db: the study file is damaged (table frame");
+    }
+    for (size_t i = 0; i < countof(of_gaze); i++) {
         subcommand_fails(of_gaze[i], "gaze.db", "gaze.db: the study file is damaged");
+        subcommand_fails(of_gaze[i], "nogaze.db", "nogaze.db: the study file is damaged (table gaze");
+    }
 }
 
 static void nobody_and_nobody_real(void **state)

@@ -75,8 +75,8 @@ static void bad_input_has_a_sentence(void **state)
     expect_fails(EXPORT("a.db", "-o", "d", "--format", "xml"), 2, "must be both, psych-ds or bids", "d");
     expect_fails(EXPORT("a.db"), 2, "needs -o DIR", "d");
     expect_fails(EXPORT("a.db", "-o", "nofolder/d"), 1, "cannot be made", "nofolder/d");
-    study_file_sql("a.db", "PRAGMA user_version = 0"); // what a store of the version before would have written
-    expect_fails(EXPORT("a.db", "-o", "d"), 1, "older version", "d");
+    study_file_sql("a.db", "PRAGMA user_version = 0");
+    expect_fails(EXPORT("a.db", "-o", "d"), 1, "its version is 0", "d");
     study_file_sql("a.db", "PRAGMA user_version = 2");
     assert_int_equal(truncate("a.db", 61440), 0);
     expect_fails(EXPORT("a.db", "-o", "d"), 1, "damaged", "d");

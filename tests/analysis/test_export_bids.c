@@ -68,6 +68,19 @@ static void gaze_keeps_the_rules(void **state)
     expect_done(RUN("/bin/rm", "-r", "h"));
 }
 
+// Of saccades at 90 Hz there is a size and no peak, whose neighbours are 22 ms apart.
+static void a_slow_tracker_has_no_peaks(void **state)
+{
+    (void)state;
+    expect_done(RUN(BUILD_DIR "/tests/gaze_study", "slow.db", "1", "2", "10", "90", "0"));
+    expect_done(EXPORT("slow.db", "-o", "slow", "--simulated", "--format", "bids"));
+    expect_done(
+        SHELL("zcat slow/*/*/beh/*_physioevents.tsv.gz | grep saccade > saccades && test $(wc -l < "
+              "saccades) -gt 20 && ! cut -f 6 saccades | grep -q n/a && ! cut -f 7 saccades | grep -qv n/a"));
+    expect_done(SHELL(BUILD_DIR "/bin/fovstats gaze --events --simulated slow.db > events.csv"));
+    expect_done(RUN("/usr/bin/env", "python3", rules, "slow", "slow.db", "events.csv"));
+}
+
 // A fault that is planted in the good dataset must be named.
 static void planted_faults_are_found(void **state)
 {
@@ -195,6 +208,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(gaze_keeps_the_rules),
+        cmocka_unit_test(a_slow_tracker_has_no_peaks),
         cmocka_unit_test(planted_faults_are_found),
         cmocka_unit_test(what_has_no_rate_is_said),
         cmocka_unit_test(people_keep_apart),

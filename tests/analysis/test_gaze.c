@@ -148,7 +148,7 @@ static void agrees_with_r(void **state)
             check_events(&r, strcmp(r.what, "ivt") == 0 ? GAZE_IVT : GAZE_IDT);
     }
     fclose(file);
-    assert_int_equal(seen, 103);
+    assert_int_equal(seen, 107);
 }
 
 // --- a track, by law ---

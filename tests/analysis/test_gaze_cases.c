@@ -25,7 +25,7 @@ static void accuracy_has_no_region(void **state)
     (void)state;
     gaze_said_make("1", "8", "250", "90");
     study_file_sql("s.db", "UPDATE gaze SET valid = 1, y_deg = 0, x_deg = iif(id <= 1000, 0.2, 15);"
-                           "UPDATE frame SET target_x_deg = 0, target_y_deg = 0;"
+                           "UPDATE frame SET target_x_deg = 0, target_y_deg = 0, gaze_id = NULL;"
                            "DELETE FROM gaze WHERE id < 11 OR id > 1990;"); // the frames' light is 11 ms late
     struct program_result r = gaze_said("--json");
     gaze_said_close(gaze_said_number(&r, "accuracy_deg"), 7.6, 1e-9);
@@ -160,6 +160,68 @@ static void a_main_sequence_needs_its_rate(void **state)
     program_free(&r);
 }
 
+// Samples lost one by one at random, of Vmax 600 and c 6. A peak is known where of the fastest sample and the
+// two before and after it none is lost: in (1 - loss)^5 of the saccades.
+static void lost_samples_bend_no_curve(void **state)
+{
+    static const struct {
+        const char *hz;
+        double loss;
+        bool c;
+    } cases[] = {{"250", 0.1, true}, {"250", 0.3, true}, {"250", 0.5, true}, {"120", 0.4, false}};
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        char sql[160];
+        gaze_said_make("12", "80", cases[i].hz, "0");
+        snprintf(
+            sql, sizeof sql,
+            "DELETE FROM gaze WHERE sin(id * 12.9898) * 43758.5453 - floor(sin(id * 12.9898) * 43758.5453) "
+            "< %g",
+            cases[i].loss);
+        study_file_sql("s.db", sql);
+        struct program_result r = gaze_said("--json");
+        double vmax = gaze_said_after(r.out, "\"vmax_deg_s\":", "value"),
+               c = gaze_said_after(r.out, "\"c_deg\":", "value");
+        double kept = gaze_said_after(r.out, "\"main_sequence\":", "saccades") /
+                      gaze_said_after(r.out, "\"main_sequence\":", "saccades_complete");
+        if (!(fabs(vmax / 600 - 1) < 0.1) || !(cases[i].c ? fabs(c / 6 - 1) < 0.16 : isnan(c)))
+            fail_msg("%s Hz, loss %g: Vmax %g, c %g", cases[i].hz, cases[i].loss, vmax, c);
+        gaze_said_close(kept, pow(1 - cases[i].loss, 5), 0.06);
+        program_free(&r);
+    }
+    gaze_said_make("2", "20", "250", "0");
+    study_file_sql("s.db", "DELETE FROM gaze WHERE id % 3 = 0"); // one of any five
+    gaze_said_part("--simulated", "k, b not estimable: samples are missing at the peaks of all but 0 of ");
+}
+
+// No peak at a rate that does not tell it, in the list as in the tables.
+static void the_list_has_no_peak_either(void **state)
+{
+    static const struct {
+        const char *hz;
+        bool known;
+    } rates[] = {{"90", false}, {"120", true}};
+    (void)state;
+    for (size_t i = 0; i < 2; i++) {
+        gaze_said_make("1", "20", rates[i].hz, "0");
+        struct program_result r = gaze_said("--events");
+        const char *saccade = strstr(r.out, ",saccade,");
+        assert_non_null(saccade);
+        for (int field = 0; field < 7; field++) {
+            saccade = strchr(saccade, ',');
+            assert_non_null(saccade++);
+        }
+        assert_true((*saccade != ',') == rates[i].known);
+        program_free(&r);
+    }
+    gaze_said_make("2", "20", "90", "0");
+    gaze_said_part("--simulated", "at 90 Hz a peak is taken over 22 ms");
+    struct program_result r = gaze_said("--json");
+    assert_true(gaze_said_after(r.out, "\"main_sequence\":", "saccades") == 0);
+    assert_true(gaze_said_after(r.out, "\"main_sequence\":", "saccades_complete") > 50);
+    program_free(&r);
+}
+
 static void the_page_says_it(void **state)
 {
     (void)state;
@@ -183,9 +245,10 @@ static void the_page_says_it(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(accuracy_has_no_region),    cmocka_unit_test(pursuit_has_no_precision),
-        cmocka_unit_test(dead_sittings_are_missing), cmocka_unit_test(two_rates_are_not_one),
-        cmocka_unit_test(lost_frames_are_told),      cmocka_unit_test(a_main_sequence_needs_its_rate),
+        cmocka_unit_test(accuracy_has_no_region),     cmocka_unit_test(pursuit_has_no_precision),
+        cmocka_unit_test(dead_sittings_are_missing),  cmocka_unit_test(two_rates_are_not_one),
+        cmocka_unit_test(lost_frames_are_told),       cmocka_unit_test(a_main_sequence_needs_its_rate),
+        cmocka_unit_test(lost_samples_bend_no_curve), cmocka_unit_test(the_list_has_no_peak_either),
         cmocka_unit_test(the_page_says_it),
     };
     return cmocka_run_group_tests(tests, program_enter_folder, program_leave_folder);

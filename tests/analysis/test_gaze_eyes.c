@@ -124,11 +124,43 @@ static void an_older_file_is_read(void **state)
             fail_msg("%s: exit %d: %s", reading[i][0], r.code, r.err);
         program_free(&r);
     }
-    struct program_result r = run("merge", "m.db");
-    assert_int_equal(r.code, 1);
-    assert_non_null(
-        strstr(r.err, "s.db: is of an older version (1, now 2); open it once with fovstudy resume"));
+}
+
+// Joined with a copy of ours, it is the same session; its frames without a distance are all there.
+static void an_older_file_is_joined(void **state)
+{
+    (void)state;
+    gaze_said_make("2", "8", "250", "90");
+    study_file_sql("s.db", "UPDATE frame SET target_m = NULL");
+    struct program_result now = gaze_said("--json");
+    make_older();
+    const char *merge[] = {FOVSTATS, "merge", "s.db", "now.db", "-o", "joined.db", NULL};
+    struct program_result r = program_run(merge, NULL);
+    if (r.code != 0)
+        fail_msg("exit %d: %s", r.code, r.err);
+    assert_non_null(strstr(r.out, "2 files, 1 participant, 1 session; 1 was in several files"));
     program_free(&r);
+    assert_int_equal(rename("joined.db", "s.db"), 0);
+    struct program_result joined = gaze_said("--json");
+    assert_string_equal(now.out, joined.out);
+    program_free(&now);
+    program_free(&joined);
+}
+
+// 8 s of 90 Hz twice: a seventh of the frames is of a condition that is not there.
+static void a_damaged_older_file_is_refused(void **state)
+{
+    (void)state;
+    gaze_said_make("2", "8", "250", "90");
+    make_older();
+    study_file_sql("s.db", "UPDATE frame SET condition_id = 999 WHERE id % 7 = 0");
+    static const char *const of[][2] = {{"export", "refused"}, {"merge", "refused.db"}};
+    for (size_t i = 0; i < 2; i++) {
+        struct program_result r = run(of[i][0], of[i][1]);
+        if (r.code != 1 || !strstr(r.err, "s.db: the study file is damaged (table frame"))
+            fail_msg("%s: exit %d: %s", of[i][0], r.code, r.err);
+        program_free(&r);
+    }
 }
 
 int main(void)
@@ -137,6 +169,8 @@ int main(void)
         cmocka_unit_test(an_eye_sees_a_near_target_inwards),
         cmocka_unit_test(without_depth_an_eye_has_no_accuracy),
         cmocka_unit_test(an_older_file_is_read),
+        cmocka_unit_test(an_older_file_is_joined),
+        cmocka_unit_test(a_damaged_older_file_is_refused),
     };
     return cmocka_run_group_tests(tests, program_enter_folder, program_leave_folder);
 }

@@ -211,8 +211,9 @@ static void bad_files_have_a_sentence(void **state)
     make_labs();
     unlink("m.db");
     expect_fails(MERGE("a.db", "nowhere.db", "-o", "m.db"), 1, "nowhere.db: there is no such file", "m.db");
-    study_file_sql("b.db", "PRAGMA user_version = 0"); // what a store of the version before would have written
-    expect_fails(MERGE("a.db", "b.db", "-o", "m.db"), 1, "b.db: is of an older version (0, now 2)", "m.db");
+    study_file_sql("b.db", "PRAGMA user_version = 0");
+    expect_fails(MERGE("a.db", "b.db", "-o", "m.db"), 1, "b.db: the study file is damaged (its version is 0",
+                 "m.db");
     study_file_sql("b.db", "PRAGMA user_version = 99");
     expect_fails(MERGE("a.db", "b.db", "-o", "m.db"), 1, "b.db: was written by a newer program", "m.db");
     // Half of a copy that was interrupted.

@@ -8,7 +8,7 @@
 #     logs: ln k, its error, b, its error; t quantile of n - 2 at 95 %
 #   ivt, idt: times in ms; x; y; parameters (velocity, window, least fixation, least saccade, merge ms, merge deg, window of
 #     the peak; or dispersion, least fixation); then events as kind (1 fixation, 2 saccade), first, last (from 0), amplitude, peak
-#     (0 of fixations). By the definitions, sample by sample, without a moving window.
+#     (0 of fixations; NA where the samples are too far apart at it). By the definitions, sample by sample, without a moving window.
 out <- file(file.path(dirname(sub("--file=", "", grep("--file=", commandArgs(FALSE), value = TRUE))), "gaze.csv"), "w")
 line <- function(...) writeLines(paste(..., sep = ","), out)
 num <- function(x) paste(sprintf("%.17g", x), collapse = " ")
@@ -66,11 +66,17 @@ velocities <- function(t, x, y, window) {
     to <- which(t <= t[i] + window / 2 & seq_len(n) > i)
     a <- if (length(from)) min(from) else max(1, i - 1)
     b <- if (length(to)) max(to) else min(n, i + 1)
-    angle(x[a], y[a], x[b], y[b]) / ((t[b] - t[a]) / 1000)
+    c(angle(x[a], y[a], x[b], y[b]) / ((t[b] - t[a]) / 1000), t[b] - t[a])
   })
 }
+# Of samples first to last: the fastest; NA where its velocity or a neighbour's is over more than 17.5 ms.
+peak <- function(v, first, last) {
+  at <- first - 1 + which.max(v[1, first:last])
+  spans <- v[2, max(1, at - 1):min(ncol(v), at + 1)]
+  if (max(spans) <= 17.5) v[1, at] else NA
+}
 ivt <- function(name, t, x, y, p) {
-  v <- velocities(t, x, y, p[2]); peaks <- velocities(t, x, y, p[7])
+  v <- velocities(t, x, y, p[2])[1, ]; peaks <- velocities(t, x, y, p[7])
   runs <- rle(v > p[1])
   last <- cumsum(runs$lengths); first <- last - runs$lengths + 1
   # fixations as lists of samples, joined while two neighbours are close
@@ -90,7 +96,7 @@ ivt <- function(name, t, x, y, p) {
   events <- rbind(
     do.call(rbind, lapply(Filter(function(f) t[f[2]] - t[f[1]] >= p[3], fix), function(f) c(1, f - 1, 0, 0))),
     do.call(rbind, lapply(Filter(function(s) t[s[2]] - t[s[1]] >= p[4], sac), function(s)
-      c(2, s - 1, angle(x[s[1]], y[s[1]], x[s[2]], y[s[2]]), max(peaks[s[1]:s[2]])))))
+      c(2, s - 1, angle(x[s[1]], y[s[1]], x[s[2]], y[s[2]]), peak(peaks, s[1], s[2])))))
   if (!is.null(events)) events <- events[order(events[, 2]), , drop = FALSE]
   line("ivt", name, num(t), num(x), num(y), num(p), if (is.null(events)) "" else num(t(events)))
 }
@@ -151,4 +157,10 @@ eye("ahead half a metre", 0, 0, 0.5, -0.0315)
 eye("far", 5, -3, 1e6, 0.0315)
 eye("middle", 12, 7, 2, 0)
 for (i in 1:12) eye(paste("random", i), runif(1, -50, 50), runif(1, -40, 40), runif(1, 0.3, 5), runif(1, -0.04, 0.04))
+
+for (hz in c(250, 500)) for (loss in c(0.2, 0.5)) { # at random
+  w <- walk(500, hz, 0.02)
+  k <- which(runif(500) >= loss)
+  ivt(sprintf("%g Hz loss %g", hz, loss), w$t[k], w$x[k], w$y[k], usual)
+}
 close(out)
