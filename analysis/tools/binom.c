@@ -22,8 +22,10 @@ static const char help[] =
     "tests;\n"
     "                   a test of P that finds nothing does not show that\n"
     "  --prior A,B      Beta prior of the Bayes factor BF10 (1,1)\n"
-    "  --share S        power of the two-sided test where S is true, and the N that it needs\n"
-    "  --power W        the power that N is wanted for (0.8)\n"
+    "  --share S        power of the two-sided test where S is true, and the N that it needs; not beside "
+    "another\n"
+    "                   --alternative\n"
+    "  --power W        the power that N is wanted for (0.8), beside --share\n"
     "  --json           one object: k n p0 p_value estimate ci_low ci_high null_low null_high ln_p mid_p "
     "wilson_low\n"
     "                   wilson_high jeffreys_low jeffreys_high prior_a prior_b ln_bf10 and, where asked, "
@@ -79,16 +81,36 @@ static int check_numbers(const struct command *command, const struct binom_reque
         return command_fail(command, EXIT_USAGE, "--conf is %g but --margin needs more than 0.5", r->conf);
     if (!isnan(r->share) && !(r->share >= 0 && r->share <= 1))
         return command_fail(command, EXIT_USAGE, "--share is %g but must be from 0 to 1", r->share);
-    if (!(r->power > 0 && r->power < 1))
+    if (isnan(r->share) && !isnan(r->power))
+        return command_fail(command, EXIT_USAGE,
+                            "--power is %g but needs --share S beside it, the probability that is to be found",
+                            r->power);
+    if (!isnan(r->power) && !(r->power > 0 && r->power < 1))
         return command_fail(command, EXIT_USAGE, "--power is %g but must lie between 0 and 1, for example 0.8",
                             r->power);
     return -1;
 }
 
+// The power of another test than the one that is made would be taken for its own.
+static int check_power(const struct command *command, const struct binom_request *r)
+{
+    if (isnan(r->share) || r->alternative == STAT_TWO_SIDED)
+        return -1;
+    return command_fail(
+        command, EXIT_USAGE,
+        "--share gives the power of the two-sided test, and --alternative is %s; ask for one of "
+        "them at a time",
+        alternative_words[r->alternative]);
+}
+
 static int run(const struct command *command, int argc, char **argv)
 {
-    struct binom_request r = {
-        .p0 = 0.5, .conf = 0.95, .margin = (double)NAN, .prior = {1, 1}, .share = (double)NAN, .power = 0.8};
+    struct binom_request r = {.p0 = 0.5,
+                              .conf = 0.95,
+                              .margin = (double)NAN,
+                              .prior = {1, 1},
+                              .share = (double)NAN,
+                              .power = (double)NAN};
     const char *word = alternative_words[STAT_TWO_SIDED], *prior = "1,1";
     bool json = false;
     const struct option options[] = {
@@ -105,8 +127,9 @@ static int run(const struct command *command, int argc, char **argv)
         return command_fail(command, EXIT_USAGE, "needs K and N, and nothing else; see --help");
     if ((code = check_counts(command, argv[0], argv[1], &r)) >= 0 || (code = check_numbers(command, &r)) >= 0 ||
         (code = alternative_parse(command, word, &r.alternative)) >= 0 ||
-        (code = check_prior(command, prior, &r)) >= 0)
+        (code = check_power(command, &r)) >= 0 || (code = check_prior(command, prior, &r)) >= 0)
         return code;
+    r.power = isnan(r.power) ? 0.8 : r.power;
     if (json)
         binom_print_json(&r);
     else

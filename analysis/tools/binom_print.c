@@ -43,8 +43,13 @@ static void print_interval(double conf, struct stat_interval ci, const char *who
 static void print_equality(const struct binom_request *r, const struct stat_binomial *t)
 {
     double alpha = 1 - r->conf;
+    bool edge = !(r->p0 > 0 && r->p0 < 1); // where a margin would leave 0 to 1
     if (isnan(r->margin)) {
-        if (t->p_value > alpha)
+        if (t->p_value > alpha && edge)
+            printf("  equality     not shown: a test that finds no difference shows none, and no margin fits "
+                   "around a p0 of %g\n",
+                   r->p0);
+        else if (t->p_value > alpha)
             printf("  equality     not shown: a test that finds no difference shows none; --margin M tests for "
                    "it\n");
         return;

@@ -7,7 +7,8 @@
 static const char help[] =
     "usage: fovstats power --share P [--margin M] [--participants N | FROM..TO] [--choices C] [--sd SD]\n"
     "                      [--alpha A] [--power W] [--studies S] [--seed N] [--json]\n"
-    "       fovstats power REHEARSAL.db [--simulated] --share P --participants FROM..TO [the same options]\n"
+    "       fovstats power REHEARSAL.db [--simulated] --share P [--participants N | FROM..TO] [the same "
+    "options]\n"
     "       fovstats power --d D | --difference X --sd SD [--unpaired] [--participants N | FROM..TO] [...]\n"
     "       fovstats power --f F --levels 3x2 | REHEARSAL.db [--simulated] [--participants N | FROM..TO] "
     "[...]\n"
@@ -23,7 +24,11 @@ static const char help[] =
     "made\n"
     "                them: rehearse with fovstudy run PROTOCOL --participants N --observer sim; who chose "
     "nothing in\n"
-    "                a cell, for all answers were \"equal\", has no choice there in the plan either\n"
+    "                a cell, for all answers were \"equal\", has no choice there in the plan either; of a cell "
+    "that K\n"
+    "                of its M participants get and answer so that it counts, N participants have N K / M "
+    "people "
+    "there\n"
     "  --simulated   its simulated sessions, as of a rehearsal\n"
     "  --share P     the mean preference over people, above 0 and below 1 (with --margin: 0.5)\n"
     "  --margin M    how often equality within 0.5 - M to 0.5 + M is shown instead, by two one-sided tests at "
@@ -49,7 +54,8 @@ static const char help[] =
     "  --f F         Cohen's f: standard deviation of the effect's true values over the cells in standard\n"
     "                deviations of its error (what is left of a cell without person and effect)\n"
     "\n"
-    "  --participants N   how many, or a range of up to 200 sizes (10..60)\n"
+    "  --participants N   how many in the whole study, none of them excluded, or a range of up to 200 sizes\n"
+    "                (10..60); needed only where choices are several\n"
     "  --alpha A     level of the test, two-sided but for --margin (0.05)\n"
     "  --power W     also say how many people, of up to 10000 where not for --share alone, reach it (0.8)\n"
     "  --json        one object with the sizes in an array; what is not reached is null\n";
@@ -91,7 +97,7 @@ static int run(const struct command *command, int argc, char **argv)
         return code;
     struct json json = {stdout, false};
     int64_t choices = (int64_t)plan.choices;
-    const struct power_case only = {"", &choices, 1, 0};
+    const struct power_case only = {.name = "", .choices = &choices, .count = 1};
     const struct power_source source = {
         .simulates = !power_plan_test(&plan, &only)->at, .designs = &plan.design, .design_count = 1};
     if (count) {

@@ -123,7 +123,7 @@ static int check_difference(const struct command *command, struct power_plan *pl
     return -1;
 }
 
-static int check_choices(const struct command *command, bool people, bool rehearsal, struct power_plan *plan)
+static int check_choices(const struct command *command, bool people, struct power_plan *plan)
 {
     int code = check_range(command, "--sd", plan->sd, 0, 10, false);
     if (code >= 0)
@@ -133,9 +133,10 @@ static int check_choices(const struct command *command, bool people, bool rehear
                             plan->margin);
     if (!isnan(plan->margin) && !(plan->alpha < 0.5))
         return command_fail(command, EXIT_USAGE, "--alpha is %g but --margin needs less than 0.5", plan->alpha);
-    if (!people && (rehearsal || plan->choices != 1))
-        return command_fail(command, EXIT_USAGE,
-                            "needs --participants N or FROM..TO where studies are simulated");
+    if (!people && plan->choices != 1)
+        return command_fail(
+            command, EXIT_USAGE,
+            "needs --participants N or FROM..TO: several choices each are simulated, size by size");
     plan->share = isnan(plan->share) ? 0.5 : plan->share;
     plan->sd = isnan(plan->sd) ? 0.5 : plan->sd;
     return -1;
@@ -160,7 +161,7 @@ int power_plan_check(const struct command *command, const char *people, const ch
     if (!isnan(plan->f) && !(plan->f > 0 && power_design_fits(plan, &plan->design)))
         return command_fail(command, EXIT_USAGE,
                             "--f is %g but must be above 0, and F^2 times the cells 100 at most", plan->f);
-    if (!power_plan_ratings(plan) && (code = check_choices(command, people, rehearsal, plan)) >= 0)
+    if (!power_plan_ratings(plan) && (code = check_choices(command, people, plan)) >= 0)
         return code;
     return people ? check_people(command, people, plan) : -1;
 }

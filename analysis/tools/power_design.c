@@ -54,7 +54,7 @@ int power_show_design(const struct command *command, const struct power_plan *pl
                 df *= design->levels[i] - 1;
                 first = false;
             }
-        code = power_show(command, &of, &(struct power_case){name, NULL, 0, df}, json);
+        code = power_show(command, &of, &(struct power_case){.name = name, .df = df}, json);
     }
     return code;
 }

@@ -44,7 +44,8 @@ struct power_case {
     const char *name;       // "" for the only one
     const int64_t *choices; // of choices: those of each person in turn, 0 or more
     size_t count;
-    int64_t df; // of an effect
+    int64_t df;     // of an effect
+    int64_t in, of; // of every `of` participants of the study `in` are the case's; 0 and 0: all are
 };
 
 struct power_test {
@@ -56,8 +57,14 @@ struct power_test {
 
 bool power_plan_ratings(const struct power_plan *plan);
 bool power_design_fits(const struct power_plan *plan, const struct power_design *design); // f is not too large
-// The choices of so many people, who take the case's in turn. Somebody may have none, as who answers "equal".
-int64_t power_case_choices(const struct power_case *c, int64_t people);
+// Of so many participants of the study those in the case: people * in / of, rounded, halves down, for of two
+// groups of an odd number's halves one has the smaller. And the fewest participants with so many in it; 0 for
+// 0.
+int64_t power_case_people(const struct power_case *c, int64_t participants);
+int64_t power_case_participants(const struct power_case *c, int64_t people);
+// The choices of so many participants: those in the case take its in turn. Somebody may have none, as who
+// answers "equal".
+int64_t power_case_choices(const struct power_case *c, int64_t participants);
 const struct power_test *power_plan_test(const struct power_plan *plan, const struct power_case *c);
 
 // Usage errors in one sentence each, and what follows from the options. -1, or the exit code.

@@ -20,7 +20,7 @@ static struct stat_simulated_power simulate(const struct power_plan *plan, const
 {
     const struct stat_simulation simulation = {.choices = c->choices,
                                                .choices_count = c->count,
-                                               .people = (size_t)n,
+                                               .people = (size_t)power_case_people(c, n),
                                                .share = plan->share,
                                                .sd = plan->sd,
                                                .alpha = plan->alpha,
@@ -69,6 +69,7 @@ static void print_json(struct json *json, const struct power_plan *plan, const s
         const struct row *row = &rows[n - plan->from];
         json_open(json, NULL, '{');
         json_integer(json, "people", row->people);
+        json_integer(json, "in_cell", power_case_people(c, row->people));
         json_number(json, "power", row->power.power);
         json_number(json, "ci_low", row->power.ci.low);
         json_number(json, "ci_high", row->power.ci.high);
@@ -86,39 +87,61 @@ static void print_json(struct json *json, const struct power_plan *plan, const s
     json_close(json, '}');
 }
 
+// "49 people", or "98 participants of the whole study, 49 of them in this cell"
+static void size_words(const struct power_case *c, int64_t people, char out[128])
+{
+    if (c->of)
+        snprintf(out, 128, "%" PRId64 " participants of the whole study, %" PRId64 " of them in this cell",
+                 people, power_case_people(c, people));
+    else
+        snprintf(out, 128, "%" PRId64 " people", people);
+}
+
 static void print_needed(const struct power_plan *plan, const struct power_case *c, const struct row *rows)
 {
     const struct power_test *test = power_plan_test(plan, c);
     struct stat_sample_size size = test->needed ? test->needed(plan, c) : (struct stat_sample_size){0, 0};
     int64_t in_range = test->needed ? 0 : enough(plan, rows);
+    char words[128];
+    size_words(c, test->needed ? size.first : in_range, words);
     if (test->needed && size.first == size.stays && size.first)
-        printf("A power of %g needs %" PRId64 " people; every larger number has it.\n", plan->power,
-               size.first);
+        printf("A power of %g needs %s; every larger number has it.\n", plan->power, words);
     else if (test->needed && size.first)
-        printf("A power of %g needs %" PRId64 " people; from %" PRId64 " on every larger number has it.\n",
-               plan->power, size.first, size.stays);
+        printf("A power of %g needs %s; from %" PRId64 " on every larger number has it.\n", plan->power, words,
+               size.stays);
     else if (test->needed)
         printf("A power of %g is not reached by any number of people that was looked at.\n", plan->power);
     else if (in_range)
-        printf("A power of %g is reached from %" PRId64 " people on, within the sizes above.\n", plan->power,
-               in_range);
+        printf("A power of %g is reached from %s on, within the sizes above.\n", plan->power, words);
     else
         printf("A power of %g is not reached within the sizes above.\n", plan->power);
     putchar('\n');
 }
 
+static void heads(struct table *t, const struct power_test *test, bool part)
+{
+    static const char *const exact[] = {"people", "power", NULL},
+                             *const simulated[] = {"people", "power", "95 % of simulation", NULL},
+                             *const part_exact[] = {"participants", "in this cell", "power", NULL},
+                             *const part_simulated[] = {"participants", "in this cell", "power",
+                                                        "95 % of simulation", NULL};
+    if (part)
+        table_init(t, test->at ? part_exact : part_simulated);
+    else
+        table_init(t, test->at ? exact : simulated);
+}
+
 static bool print_text(const struct power_plan *plan, const struct power_case *c, const struct row *rows)
 {
-    static const char *const exact[] = {"people", "power", NULL}, *const simulated[] = {"people", "power",
-                                                                                        "95 % of simulation",
-                                                                                        NULL};
     const struct power_test *test = power_plan_test(plan, c);
     struct table t;
-    table_init(&t, test->at ? exact : simulated);
+    heads(&t, test, c->of > 0);
     printf("%s%s%s\n", c->name, c->name[0] ? "; " : "", test->method);
     for (int64_t n = plan->from; n <= plan->to && plan->from; n++) {
         const struct row *row = &rows[n - plan->from];
         table_cell(&t, "%" PRId64, n);
+        if (c->of)
+            table_cell(&t, "%" PRId64, power_case_people(c, n));
         table_cell(&t, "%.4f", row->power.power);
         if (!test->at)
             table_cell(&t, "%.4f to %.4f", row->power.ci.low, row->power.ci.high);

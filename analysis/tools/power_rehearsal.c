@@ -21,7 +21,6 @@ static size_t count_people(const struct sample *sample)
     return count;
 }
 
-// Where a cell is not everybody's, the sizes are of those who get it, and of them of those whose answers count.
 static void name_cell(const struct choice_cell *cell, size_t everybody, char out[320])
 {
     size_t none = 0;
@@ -29,11 +28,10 @@ static void name_cell(const struct choice_cell *cell, size_t everybody, char out
         none += cell->counts[i].n == 0;
     int length = snprintf(out, 320, "%.60s: %.100s", cell->block, cell->label);
     if (cell->planned_count < everybody)
-        length +=
-            snprintf(out + length, 320 - (size_t)length, " (of the participants who get this cell: %zu of %zu)",
-                     cell->planned_count, everybody);
+        length += snprintf(out + length, 320 - (size_t)length, " (%zu of %zu participants get this cell)",
+                           cell->planned_count, everybody);
     if (cell->people < cell->planned_count)
-        length += snprintf(out + length, 320 - (size_t)length, " (of those whose answers count: %zu of %zu)",
+        length += snprintf(out + length, 320 - (size_t)length, " (the answers of %zu of %zu count)",
                            cell->people, cell->planned_count);
     if (none)
         snprintf(out + length, 320 - (size_t)length, " (%zu of %zu people choose neither)", none, cell->people);
@@ -49,7 +47,13 @@ static int show_cell(const struct command *command, const struct power_plan *pla
     for (size_t j = 0; j < cell->people; j++)
         choices[j] = cell->counts[j].n;
     name_cell(cell, everybody, name);
-    int code = power_show(command, plan, &(struct power_case){name, choices, cell->people, 0}, json);
+    bool part = cell->people < everybody; // the study's people are in it as the rehearsal's
+    const struct power_case only = {.name = name,
+                                    .choices = choices,
+                                    .count = cell->people,
+                                    .in = part ? (int64_t)cell->people : 0,
+                                    .of = part ? (int64_t)everybody : 0};
+    int code = power_show(command, plan, &only, json);
     free(choices);
     return code;
 }
@@ -76,14 +80,21 @@ static int show_choices(const struct command *command, const struct power_plan *
 {
     int code = -1;
     size_t with_choices = 0;
+    const struct choice_cell *several = NULL;
     struct power_source source = {.hash = sample->data_hash};
     for (size_t i = 0; i < cells->cell_count; i++) {
-        source.simulates = source.simulates || cells->cells[i].several;
+        several = several || !cells->cells[i].several ? several : &cells->cells[i];
         with_choices += cells->cells[i].n > 0;
     }
     if (!with_choices)
         return command_fail(command, EXIT_FAILED, "%s: no choice was recorded, so no cell has a design",
                             store_reader_path(sample->files[0]));
+    if (several && !plan->from)
+        return command_fail(command, EXIT_USAGE,
+                            "needs --participants N or FROM..TO: in %s: %s people choose several times, whose "
+                            "power is simulated, size by size",
+                            several->block, several->label);
+    source.simulates = several != NULL;
     power_begin(plan, &source, json);
     for (size_t i = 0; i < cells->cell_count && code < 0; i++) {
         const struct choice_cell *cell = &cells->cells[i];

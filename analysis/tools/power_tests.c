@@ -8,7 +8,19 @@
 
 #include <math.h>
 
-int64_t power_case_choices(const struct power_case *c, int64_t people)
+int64_t power_case_people(const struct power_case *c, int64_t participants)
+{
+    return c->of ? (2 * participants * c->in + c->of - 1) / (2 * c->of) : participants;
+}
+
+int64_t power_case_participants(const struct power_case *c, int64_t people)
+{
+    if (people < 1 || (c->of && !c->in))
+        return 0;
+    return c->of ? c->of * (2 * people - 1) / (2 * c->in) + 1 : people;
+}
+
+static int64_t choices_of(const struct power_case *c, int64_t people)
 {
     int64_t all = 0, part = 0;
     for (size_t i = 0; i < c->count; i++) {
@@ -18,22 +30,27 @@ int64_t power_case_choices(const struct power_case *c, int64_t people)
     return people / (int64_t)c->count * all + part;
 }
 
-// The fewest people who make so many choices, of one each at most; 0 for 0.
-static int64_t people_of(const struct power_case *c, int64_t choices)
+int64_t power_case_choices(const struct power_case *c, int64_t participants)
 {
-    int64_t all = power_case_choices(c, (int64_t)c->count);
+    return choices_of(c, power_case_people(c, participants));
+}
+
+// The fewest participants who make so many choices, of one each at most; 0 for 0.
+static int64_t participants_of(const struct power_case *c, int64_t choices)
+{
+    int64_t all = choices_of(c, (int64_t)c->count);
     if (choices < 1 || all < 1)
         return 0;
     int64_t rounds = (choices - 1) / all, left = choices - rounds * all;
     size_t last = 0;
     for (; left > 0; last++)
         left -= c->choices[last];
-    return rounds * (int64_t)c->count + (int64_t)last;
+    return power_case_participants(c, rounds * (int64_t)c->count + (int64_t)last);
 }
 
-static struct stat_sample_size people_sizes(const struct power_case *c, struct stat_sample_size choices)
+static struct stat_sample_size sizes_of(const struct power_case *c, struct stat_sample_size choices)
 {
-    return (struct stat_sample_size){people_of(c, choices.first), people_of(c, choices.stays)};
+    return (struct stat_sample_size){participants_of(c, choices.first), participants_of(c, choices.stays)};
 }
 
 // People without a choice find nothing.
@@ -45,7 +62,7 @@ static double binomial(const struct power_plan *plan, const struct power_case *c
 
 static struct stat_sample_size binomial_size(const struct power_plan *plan, const struct power_case *c)
 {
-    return people_sizes(c, stat_binomial_sample_size(0.5, plan->share, plan->alpha, plan->power));
+    return sizes_of(c, stat_binomial_sample_size(0.5, plan->share, plan->alpha, plan->power));
 }
 
 static double equivalence(const struct power_plan *plan, const struct power_case *c, int64_t people)
@@ -56,8 +73,8 @@ static double equivalence(const struct power_plan *plan, const struct power_case
 
 static struct stat_sample_size equivalence_size(const struct power_plan *plan, const struct power_case *c)
 {
-    return people_sizes(c, stat_binomial_equivalence_size(plan->margin, plan->share, plan->alpha, plan->power,
-                                                          STAT_SIMULATED_PEOPLE));
+    return sizes_of(c, stat_binomial_equivalence_size(plan->margin, plan->share, plan->alpha, plan->power,
+                                                      STAT_SIMULATED_PEOPLE));
 }
 
 static double paired(const struct power_plan *plan, const struct power_case *c, int64_t people)

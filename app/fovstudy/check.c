@@ -2,6 +2,7 @@
 // the balance over all of them, how long it takes, what it can show. No GPU, nothing written.
 #include "app/command/options.h"
 #include "app/fovstudy/catalogue.h"
+#include "app/fovstudy/check_figures.h"
 #include "app/fovstudy/check_number.h"
 #include "app/fovstudy/check_report.h"
 #include "app/fovstudy/check_scenes.h"
@@ -95,7 +96,8 @@ static int read_request(struct request *out, int argc, char **argv)
                 "fovstudy check PROTOCOL [--participant CODE --db FILE | --number N] [--counts N] [--json]",
                 "Checks a protocol; prints a participant's trials in their order, the balance over all "
                 "participants, the "
-                "expected duration, the smallest effects that the planned tests find, and what seems odd.",
+                "expected duration, the smallest effects that the tests of fovstats planned find, and what "
+                "seems odd.",
                 specs);
             return EXIT_DONE;
         }
@@ -127,14 +129,15 @@ static bool look_up(struct request *request)
 }
 
 // Remarks of the file itself, and of its scenes.
-static char *gather_remarks(const struct request *request, const struct protocol *protocol, char *error,
-                            size_t error_size)
+static char *gather_remarks(const struct request *request, const struct protocol *protocol,
+                            const struct check_analyses *analyses, char *error, size_t error_size)
 {
     struct text remarks = {0};
     for (uint32_t i = 0; i < protocol->remark_count; i++)
         text_add(&remarks, "%s\n", protocol->remarks[i]);
     bool ok = check_scenes(request->protocol, protocol, request->scenes, request->scene_count, request->load,
                            &remarks, error, error_size);
+    check_figures_remarks(&remarks, request->protocol, analyses);
     char *all = text_take(&remarks);
     if (ok && !all)
         snprintf(error, error_size, "out of memory");
@@ -172,8 +175,10 @@ static bool examine(const struct request *request, const struct protocol *protoc
                                                                      : PARTICIPANTS,
                                   .people_assumed = !request->counts && !protocol->participants};
     struct plan *plan = plan_create(protocol, report.seed, (uint32_t)(request->number - 1));
-    char *remarks = plan ? gather_remarks(request, protocol, error, sizeof error) : NULL;
-    bool done = false;
+    progress(&report, "the planned tests");
+    bool done = false,
+         planned = plan && check_analyses_init(&report.analyses, protocol, report.seed, report.people);
+    char *remarks = planned ? gather_remarks(request, protocol, &report.analyses, error, sizeof error) : NULL;
     if (remarks) {
         report.plan = plan;
         report.remarks = remarks;
@@ -181,12 +186,10 @@ static bool examine(const struct request *request, const struct protocol *protoc
         duration_of(plan, &report.pace, &report.duration);
         progress(&report, "the orders");
         done = plan_carry_over(protocol, report.seed, 0, report.people, report.carry);
-        progress(&report, "the planned tests");
-        done = done && check_analyses_init(&report.analyses, protocol, report.seed, report.people);
         progress(&report, "the balance");
         done = done && print(request, &report);
-        check_analyses_finish(&report.analyses);
     }
+    check_analyses_finish(&report.analyses);
     if (!done)
         fprintf(stderr, "fovstudy: %s\n", error);
     free(remarks);

@@ -1,6 +1,7 @@
 #include "app/fovstudy/check_figures.h"
 
 #include "analysis/stats/power.h"
+#include "analysis/stats/power_equivalence.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -13,7 +14,21 @@ static void name_write(struct text *text, const struct check_analysis *analysis)
     text_add(text, "%s of %s%s%s", planned->method, planned->of, *planned->per ? ", per " : "", planned->per);
 }
 
-static void binomial_write(struct text *text, const struct check_part *part)
+// Tests of equality within the planned margin, of one answer each; with several they depend on how people
+// differ.
+static void margin_write(struct text *text, const struct check_part *part, double margin, uint32_t same)
+{
+    double power = stat_binomial_equivalence_power(part->people, margin, 0.5, CHECK_ALPHA);
+    text_add(text, "    %u more of equality within the planned 50 +- %.4g %%: ", same, 100 * margin);
+    if (part->answers > part->people)
+        text_add(text, "depends on how people differ; fovstats power simulates it\n");
+    else if (isnan(power))
+        text_add(text, "nothing\n");
+    else
+        text_add(text, "shown in %.1f %% of studies without a preference\n", floor(1000 * power) / 10);
+}
+
+static void binomial_write(struct text *text, const struct check_part *part, double planned, uint32_t same)
 {
     double share = stat_binomial_detectable(part->people, CHECK_ALPHA, CHECK_POWER),
            margin = stat_binomial_margin(part->people, CHECK_ALPHA, CHECK_POWER);
@@ -25,79 +40,99 @@ static void binomial_write(struct text *text, const struct check_part *part)
         text_add(text, "; no equivalence\n");
     else
         text_add(text, "; equivalence within 50 +- %.1f %%\n", ceil(1000 * margin) / 10);
+    if (part->margin)
+        margin_write(text, part, planned, same);
 }
 
-static void t_write(struct text *text, double d)
+// The smallest difference in standard deviations; NaN where there is none, or no test.
+static double detectable(const struct check_analysis *analysis, const struct check_part *part)
 {
-    if (isnan(d))
+    if (analysis->test == CHECK_PAIRED_T)
+        return stat_paired_t_detectable(part->people, CHECK_ALPHA, CHECK_POWER);
+    return part->both ? (double)NAN
+                      : stat_two_sample_t_detectable(part->people, part->second, CHECK_ALPHA, CHECK_POWER);
+}
+
+static void t_write(struct text *text, const struct check_analysis *analysis, const struct check_part *part)
+{
+    double d = detectable(analysis, part);
+    if (part->both)
+        text_add(text, "no test: %u have both; a paired test is theirs\n", part->both);
+    else if (analysis->test == CHECK_PAIRED_T && part->people == 0)
+        text_add(text, "no test: nobody has both in what is otherwise the same\n");
+    else if (isnan(d))
         text_add(text, "nothing\n");
     else
         text_add(text, "a difference of %.2f standard deviations or more\n", ceil(100 * d) / 100);
 }
 
-static int by_people_alone(const void *left, const void *right)
+static int by_number(uint32_t a, uint32_t b)
 {
-    const struct check_part *a = left, *b = right;
-    return (a->people > b->people) - (a->people < b->people);
+    return (a > b) - (a < b);
 }
 
+// Tests that come together here have the same figures.
 static int by_people(const void *left, const void *right)
 {
     const struct check_part *a = left, *b = right;
-    if (a->people != b->people)
-        return a->people < b->people ? -1 : 1;
-    return (a->answers > b->answers) - (a->answers < b->answers);
+    int order = by_number(a->people, b->people);
+    order = order ? order : by_number(a->second, b->second);
+    order = order ? order : by_number(a->both, b->both);
+    order = order ? order : by_number(a->margin, b->margin);
+    return order ? order : by_number(a->answers, b->answers);
+}
+
+static void parts_write(struct text *text, const struct check_analysis *analysis, const struct check_part *part,
+                        uint32_t same)
+{
+    text_add(text, "    ");
+    if (analysis->part_count > 1)
+        text_add(text, "%u %s%s, ", same, part->pair ? "pair" : "test", same > 1 ? "s" : "");
+    text_add(text, "n = %u", part->people);
+    if (analysis->test == CHECK_TWO_SAMPLE_T)
+        text_add(text, " and %u", part->second);
+    text_add(text, "%s%s%s%s: ", same > 1 ? " each" : "", same == 1 && *part->label ? " (" : "",
+             same == 1 ? part->label : "", same == 1 && *part->label ? ")" : "");
+    if (analysis->test == CHECK_BINOMIAL)
+        binomial_write(text, part, analysis->planned->margin, same);
+    else
+        t_write(text, analysis, part);
+}
+
+static void notes_write(struct text *text, const struct check_analysis *analysis, bool repeated)
+{
+    if (repeated)
+        text_add(
+            text,
+            "    choices repeat within participants, who differ, so that people are tested; n counts them, and "
+            "the figures\n    are those of which option each chose more often; fovstats power simulates the "
+            "test itself\n");
+    if (analysis->test == CHECK_PAIRED_T)
+        text_add(text, "    n counts participants, each with one difference; standard deviations are of the "
+                       "differences\n");
+    if (analysis->test == CHECK_TWO_SAMPLE_T)
+        text_add(text, "    n counts the participants of two groups; standard deviations are of people\n");
 }
 
 // Tests with as many people and answers have the same figures: one line for all of them.
 static void parts_text(struct text *text, const struct check_analysis *analysis)
 {
-    bool paired = analysis->test == CHECK_PAIRED_T, repeated = false;
-    const char *per = analysis->planned->per;
-    bool levels =
-        paired && (strcmp(per, "factor") == 0 || strcmp(per, "scene") == 0); // compared with each other
+    bool repeated = false;
     struct check_part *parts = calloc(analysis->part_count + 1, sizeof *parts);
     text->failed = text->failed || !parts;
-    for (uint32_t i = 0; i < analysis->part_count && parts; i++)
-        parts[i] = analysis->parts[i];
-    int (*order)(const void *, const void *) = paired ? by_people_alone : by_people;
-    if (parts)
-        qsort(parts, analysis->part_count, sizeof *parts, order);
-    for (uint32_t i = 0, same; i < analysis->part_count && parts; i += same) {
-        for (same = 1; i + same < analysis->part_count && order(&parts[i], &parts[i + same]) == 0;)
-            same++;
-        text_add(text, "    ");
-        if (analysis->part_count > 1)
-            text_add(text, "%u %s%s, ", same, levels ? "level" : "test", same > 1 ? "s" : "");
-        text_add(text, "n = %u%s: ", parts[i].people, same > 1 ? " each" : "");
-        if (paired)
-            t_write(text, stat_paired_t_detectable(parts[i].people, CHECK_ALPHA, CHECK_POWER));
-        else
-            binomial_write(text, &parts[i]);
-        repeated = repeated || parts[i].answers > parts[i].people;
-    }
-    if (repeated && !paired)
-        text_add(
-            text,
-            "    choices repeat within participants, so n counts participants: the test at their level, of "
-            "which\n    option each of them chose more often; their single choices are not independent\n");
-    if (paired)
-        text_add(text, "    n counts participants, each with one difference; standard deviations are of the "
-                       "differences\n");
-    free(parts);
-}
-
-static void two_samples_text(struct text *text, const struct check_analysis *analysis)
-{
-    const struct check_part *parts = analysis->parts;
-    if (analysis->part_count != 2) {
-        text_add(text, "    needs two groups of people, and there %s %u\n",
-                 analysis->part_count == 1 ? "is" : "are", analysis->part_count);
+    if (!parts)
         return;
+    for (uint32_t i = 0; i < analysis->part_count; i++)
+        parts[i] = analysis->parts[i];
+    qsort(parts, analysis->part_count, sizeof *parts, by_people);
+    for (uint32_t i = 0, same; i < analysis->part_count; i += same) {
+        for (same = 1; i + same < analysis->part_count && by_people(&parts[i], &parts[i + same]) == 0;)
+            same++;
+        parts_write(text, analysis, &parts[i], same);
+        repeated = repeated || (analysis->test == CHECK_BINOMIAL && parts[i].answers > parts[i].people);
     }
-    text_add(text, "    n = %u (%s) and %u (%s): ", parts[0].people, parts[0].label, parts[1].people,
-             parts[1].label);
-    t_write(text, stat_two_sample_t_detectable(parts[0].people, parts[1].people, CHECK_ALPHA, CHECK_POWER));
+    notes_write(text, analysis, repeated);
+    free(parts);
 }
 
 void check_figures_text(struct text *text, const struct check_analyses *analyses, uint32_t people, bool assumed)
@@ -117,10 +152,10 @@ void check_figures_text(struct text *text, const struct check_analyses *analyses
             text_add(text, "    no figure: %s\n",
                      analysis->planned->method[0] == 'm' ? "an estimate, nothing is tested"
                                                          : "power of this method is not computed here");
-        else if (analysis->part_count == 0)
-            text_add(text, "    no trial gives it\n");
-        else if (analysis->test == CHECK_TWO_SAMPLE_T)
-            two_samples_text(text, analysis);
+        else if (analysis->too_many)
+            text_add(text, "    no test: %u are %s\n", analysis->too_many, analysis->none);
+        else if (analysis->none)
+            text_add(text, "    no test: %s\n", analysis->none);
         else
             parts_text(text, analysis);
     }
@@ -139,13 +174,21 @@ static void part_json(struct text *text, const struct check_analysis *analysis, 
 {
     text_add(text, "%s{\"label\":", part == analysis->parts ? "" : ",");
     text_json_string(text, part->label);
-    text_add(text, ",\"n\":%u,\"answers\":%u", part->people, part->answers);
+    text_add(text, ",\"n\":%u", part->people);
+    if (analysis->test == CHECK_BINOMIAL)
+        text_add(text, ",\"answers\":%u", part->answers);
     if (analysis->test == CHECK_BINOMIAL) {
         number_json(text, "share", stat_binomial_detectable(part->people, CHECK_ALPHA, CHECK_POWER));
         number_json(text, "margin", stat_binomial_margin(part->people, CHECK_ALPHA, CHECK_POWER));
     }
-    if (analysis->test == CHECK_PAIRED_T)
-        number_json(text, "d", stat_paired_t_detectable(part->people, CHECK_ALPHA, CHECK_POWER));
+    text_add(text, ",\"margin_planned\":%s", part->margin ? "true" : "false");
+    if (part->margin && part->answers == part->people)
+        number_json(text, "planned_margin_power",
+                    stat_binomial_equivalence_power(part->people, analysis->planned->margin, 0.5, CHECK_ALPHA));
+    if (analysis->test == CHECK_TWO_SAMPLE_T)
+        text_add(text, ",\"n_second\":%u,\"both\":%u", part->second, part->both);
+    if (analysis->test != CHECK_BINOMIAL)
+        number_json(text, "d", detectable(analysis, part));
     text_add(text, "}");
 }
 
@@ -155,16 +198,15 @@ void check_figures_json(struct text *text, const struct check_analyses *analyses
     for (uint32_t i = 0; i < analyses->count; i++) {
         const struct check_analysis *analysis = &analyses->each[i];
         const struct protocol_analysis *planned = analysis->planned;
-        const struct check_part *parts = analysis->parts;
         text_add(text, "%s\n{\"method\":\"%s\",\"of\":\"%s\",\"per\":\"%s\",\"alpha\":%g,\"power\":%g",
                  i ? "," : "", planned->method, planned->of, planned->per, CHECK_ALPHA, CHECK_POWER);
-        if (analysis->test == CHECK_TWO_SAMPLE_T && analysis->part_count == 2)
-            number_json(
-                text, "d",
-                stat_two_sample_t_detectable(parts[0].people, parts[1].people, CHECK_ALPHA, CHECK_POWER));
+        if (planned->margin > 0)
+            number_json(text, "margin", planned->margin);
+        text_add(text, ",\"none\":");
+        text_json_string(text, analysis->none ? analysis->none : "");
         text_add(text, ",\"parts\":[");
         for (uint32_t p = 0; p < analysis->part_count; p++)
-            part_json(text, analysis, &parts[p]);
+            part_json(text, analysis, &analysis->parts[p]);
         text_add(text, "]}");
     }
     text_add(text, "]");

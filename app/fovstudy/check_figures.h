@@ -9,4 +9,8 @@ void check_figures_text(struct text *text, const struct check_analyses *analyses
                         bool assumed);
 void check_figures_json(struct text *text, const struct check_analyses *analyses); // ,"power":[...]
 
+// check_margins.c: a sentence a line, of the file at `path`, for each analysis whose planned margin so few
+// people seldom show.
+void check_figures_remarks(struct text *remarks, const char *path, const struct check_analyses *analyses);
+
 #endif

@@ -1,31 +1,37 @@
-// What a protocol's planned analysis can show with so many participants: for each planned test the number of
-// independent answers, and from it the smallest effect and margin (analysis/stats/power.h).
+// What a protocol's planned analysis can show with so many participants: the tests that `fovstats planned`
+// makes of it, and of each the people in it, from which follow the smallest effect and margin
+// (analysis/stats/power.h).
 #ifndef APP_FOVSTUDY_CHECK_POWER_H
 #define APP_FOVSTUDY_CHECK_POWER_H
 
-#include "studies/engine/plan.h"
-
-#include <stdbool.h>
-#include <stdint.h>
+#include "app/fovstudy/check_values.h"
 
 // Conventions, not properties of a study: Cohen 1988, "Statistical Power Analysis", section 2.4, for the power.
 #define CHECK_ALPHA 0.05
 #define CHECK_POWER 0.8
 
+enum { CHECK_PAIRS = 200 }; // of one analysis, as PLANNED_PAIRS of analysis/report/planned.h
+
 enum check_test { CHECK_ESTIMATE, CHECK_BINOMIAL, CHECK_PAIRED_T, CHECK_TWO_SAMPLE_T };
 
+// One test: a row of `fovstats planned`.
 struct check_part {
-    char label[PROTOCOL_LABELS]; // "epsilon=0.1 fovea_deg=6"; "" for the whole
-    uint32_t people;             // who give at least one answer
-    uint32_t answers;            // of all of them
-    uint32_t last;               // internal: the last participant counted, from 1
+    char label[2 * PROTOCOL_LABELS]; // "epsilon=0.1", "epsilon=0.1 - epsilon=0.2"; "" for the whole
+    bool pair;                       // of levels, scenes or cells
+    bool margin;                     // the planned margin of equality is tested too, in a row of its own
+    uint32_t people;                 // in the test; of two groups those of the first
+    uint32_t second;                 // of two groups those of the other
+    uint32_t both;                   // of two groups those in both, for whom there is no test
+    uint32_t answers;                // of choices: of all of them
 };
 
 // One line of the file's `analysis`.
 struct check_analysis {
     const struct protocol_analysis *planned;
     enum check_test test;
-    struct check_part *parts; // of a two-sample test the two samples; else a test each
+    const char *none;         // why it has no test; NULL: it has
+    uint32_t too_many;        // pairs, where that is why; else 0
+    struct check_part *parts; // a test each
     uint32_t part_count;
 };
 
@@ -38,5 +44,8 @@ struct check_analyses {
 bool check_analyses_init(struct check_analyses *out, const struct protocol *protocol, uint64_t seed,
                          uint32_t people);
 void check_analyses_finish(struct check_analyses *analyses);
+
+// check_tests.c: the tests of an analysis from its values. False: out of memory.
+bool check_tests(struct check_analysis *analysis, const struct check_values *values);
 
 #endif

@@ -99,7 +99,7 @@ static void agrees_with_r(void **state)
     double worst = 0;
     FILE *file = power_rows_open();
     while (power_row_next(file, &row)) {
-        if (strncmp(row.what, "none", 4) == 0)
+        if (strncmp(row.what, "none", 4) == 0 || strncmp(row.what, "part", 4) == 0)
             continue; // of a rehearsal: test_power_rehearsal.c
         double mine = compute(&row), off = fabs(mine - row.value);
         if (!(off <= allowed(&row)))

@@ -35,15 +35,40 @@ static void cells_take_the_choices_of_people(void **state)
                                        "22", "--sd", "0.5", "--json");
     assert_int_equal(r.code, 0);
     double several = said_after(r.out, "epsilon 0.2\"", "power"),
-           one = said_after(r.out, "epsilon 0.05 (of those whose answers count: 19 of 22)\"", "power");
-    assert_true(several > 0.99 && fabs(one - 0.516797834436943) < 1e-12); // power_simulation.csv
+           one = said_after(r.out, "epsilon 0.05 (the answers of 19 of 22 count)\"", "power");
+    assert_true(several > 0.99 &&
+                fabs(one - power_row_value("part", 22, 22, 19, 0.75, 0.05, (double)NAN)) < 1e-12);
     assert_non_null(strstr(r.out, "\"data_sha256\":\""));
     assert_true(said_after(r.out, "\"simulates\":true", "studies") == 2000);
     program_free(&r);
 }
 
-// A cell of the even people alone. Who is excluded gets no cell, and is none of those who might.
-static void sizes_are_of_those_who_get_a_cell(void **state)
+// What the command says of a cell that only some of the participants are in, against R.
+static void compare_part(const char *db, const char *cell, int in, int of)
+{
+    static const int sizes[] = {1, 2, 11, 22, 23, 44, 100};
+    char size[16];
+    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
+        snprintf(size, sizeof size, "%d", sizes[i]);
+        struct program_result r = FOVSTATS("power", db, "--share", "0.75", "--participants", size, "--json");
+        double power = said_after(r.out, cell, "power"),
+               known = power_row_value("part", sizes[i], of, in, 0.75, 0.05, (double)NAN);
+        if (!(fabs(power - known) < 1e-11))
+            fail_msg("%s of %d: %.15g, R %.15g", cell, sizes[i], power, known);
+        program_free(&r);
+    }
+    struct program_result r = FOVSTATS("power", db, "--share", "0.75", "--json"); // exact: needs no sizes
+    int looked = 110 * of / in;
+    assert_true(said_after(r.out, cell, "people_first") ==
+                power_row_value("part_first", looked, of, in, 0.75, 0.05, 0.8));
+    assert_true(said_after(r.out, cell, "people_stays") ==
+                power_row_value("part_stays", looked, of, in, 0.75, 0.05, 0.8));
+    program_free(&r);
+}
+
+// A cell of the even people alone, of whom some answer so that it does not count: a study's participants are in
+// it as the rehearsal's. Who is excluded is none of them.
+static void participants_are_of_the_whole_study(void **state)
 {
     (void)state;
     for (int excluded = 0; excluded < 2; excluded++) { // the 22nd
@@ -51,16 +76,55 @@ static void sizes_are_of_those_who_get_a_cell(void **state)
         study_file_sql("x.db",
                        "DELETE FROM choice WHERE trial_id % 20 = 12; DELETE FROM trial WHERE id % 20 = 12");
         struct program_result r = FOVSTATS("power", "x.db", "--share", "0.75", "--participants", "22");
-        says(&r, "epsilon 0.2; exact binomial", true); // everybody's
+        says(&r, "epsilon 0.2; exact binomial\npeople   power\n", true); // everybody's
         says(&r,
              excluded
-                 ? "epsilon 0.05 (of the participants who get this cell: 10 of 21) (of those whose answers "
-                   "count: 9 of 10); exact binomial"
-                 : "epsilon 0.05 (of the participants who get this cell: 11 of 22) (of those whose answers "
-                   "count: 9 of 11); exact binomial",
+                 ? "epsilon 0.05 (10 of 21 participants get this cell) (the answers of 9 of 10 count); exact "
+                   "binomial\nparticipants  in this cell   power\n          22             9  "
+                 : "epsilon 0.05 (11 of 22 participants get this cell) (the answers of 9 of 11 count); exact "
+                   "binomial\nparticipants  in this cell   power\n          22             9  ",
              true);
+        says(&r, "participants of the whole study, 30 of them in this cell; from ", true); // 30 of counts.R
         program_free(&r);
+        compare_part(
+            "x.db",
+            excluded ? "epsilon 0.05 (10 of 21 participants get this cell) (the answers of 9 of 10 count)\""
+                     : "epsilon 0.05 (11 of 22 participants get this cell) (the answers of 9 of 11 count)\"",
+            9, excluded ? 21 : 22);
     }
+    study_file_make("whole.db", &(struct study_desc){0});
+    compare_part("whole.db", "epsilon 0.05 (the answers of 19 of 22 count)\"", 19, 22);
+}
+
+// The first cell, nine choices each, is of every second person: 23 participants have 11 people there, who are
+// simulated as a study of 11, which agrees with R (test_power_simulation.c).
+static void simulated_people_are_those_in_the_cell(void **state)
+{
+    (void)state;
+    study_file_make("half.db", &(struct study_desc){.several = true});
+    study_file_sql(
+        "half.db",
+        "CREATE TEMP TABLE gone AS SELECT id FROM trial WHERE session_id % 2 = 0 AND factors = "
+        "'{\"epsilon\":0.2}'; DELETE FROM choice WHERE trial_id IN (SELECT id FROM gone); DELETE FROM "
+        "trial WHERE id IN (SELECT id FROM gone)");
+    struct program_result half =
+                              FOVSTATS("power", "half.db", "--share", "0.7", "--participants", "23", "--json"),
+                          eleven = FOVSTATS("power", "--share", "0.7", "--choices", "9", "--participants", "11",
+                                            "--json"),
+                          all = FOVSTATS("power", "--share", "0.7", "--choices", "9", "--participants", "23",
+                                         "--json"),
+                          none = FOVSTATS("power", "half.db", "--share", "0.7", "--participants", "1");
+    static const char cell[] = "epsilon 0.2 (11 of 22 participants get this cell)\"";
+    double power = said_after(half.out, cell, "power");
+    assert_true(said_after(half.out, cell, "in_cell") == 11);
+    assert_true(power == said_after(eleven.out, "sizes", "power"));
+    assert_true(power < said_after(all.out, "sizes", "power"));
+    says(&none, "           1             0  0.0000", true); // nobody is there
+    struct program_result *each[] = {&half, &eleven, &all, &none};
+    for (size_t i = 0; i < 4; i++)
+        program_free(each[i]);
+    said_sentence(FOVSTATS("power", "half.db", "--share", "0.7"), 2,
+                  "epsilon 0.2 people choose several times, whose power is simulated, size by size");
 }
 
 static void what_is_exact_is_not_called_simulated(void **state)
@@ -83,7 +147,7 @@ static void what_is_exact_is_not_called_simulated(void **state)
          "studies a size, seed 1",
          true);
     says(&nine, "epsilon 0.2; simulated sign-flip\npeople   power  95 % of simulation", true);
-    says(&nine, "; exact binomial\npeople   power\n", true);
+    says(&nine, "; exact binomial\nparticipants  in this cell   power\n", true);
     struct program_result *all[] = {&one, &json, &nine, &typed};
     for (size_t i = 0; i < 4; i++)
         program_free(all[i]);
@@ -133,7 +197,7 @@ static void cells_without_a_choice_are_said(void **state)
                           json = FOVSTATS("power", "equal.db", "--share", "0.75", "--participants", "22",
                                           "--json");
     says(&r, "epsilon 0.2; not planned: everybody chose neither", true);
-    says(&r, "epsilon 0.05 (of those whose answers count: 19 of 22); exact binomial", true);
+    says(&r, "epsilon 0.05 (the answers of 19 of 22 count); exact binomial", true);
     says(&json, "\"method\":\"not planned: everybody chose neither\",\"sizes\":[]", true);
     program_free(&r);
     program_free(&json);
@@ -247,7 +311,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cells_take_the_choices_of_people),
-        cmocka_unit_test(sizes_are_of_those_who_get_a_cell),
+        cmocka_unit_test(participants_are_of_the_whole_study),
+        cmocka_unit_test(simulated_people_are_those_in_the_cell),
         cmocka_unit_test(what_is_exact_is_not_called_simulated),
         cmocka_unit_test(people_without_a_choice_leave_the_test_exact),
         cmocka_unit_test(cells_without_a_choice_are_said),

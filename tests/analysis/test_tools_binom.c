@@ -87,12 +87,29 @@ static void no_difference_is_not_equality(void **state)
     }
 }
 
+// At 0 and 1 any margin would leave what probabilities can be: none is advised that is then refused.
+static void no_margin_is_advised_where_none_fits(void **state)
+{
+    (void)state;
+    const char *const cases[][2] = {{"0", "0"}, {"10", "1"}};
+    for (int i = 0; i < 2; i++) {
+        struct program_result r = FOVSTATS("binom", cases[i][0], "10", "--p", cases[i][1]);
+        assert_non_null(
+            strstr(r.out, i ? "no margin fits around a p0 of 1\n" : "no margin fits around a p0 of 0\n"));
+        assert_null(strstr(r.out, "--margin"));
+        program_free(&r);
+        said_sentence(FOVSTATS("binom", cases[i][0], "10", "--p", cases[i][1], "--margin", "0.1"), 2,
+                      "--margin is");
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(binom_prints),
         cmocka_unit_test(binom_prints_all),
         cmocka_unit_test(no_difference_is_not_equality),
+        cmocka_unit_test(no_margin_is_advised_where_none_fits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -10,6 +10,9 @@
 #   anova_size           people for `power`, x is f: the first size that has it by the integral
 #   none, none_margin    n people of whom the 3rd and the 22nd of each 22 make no choice, the others one, x the true share:
 #                        every count of the choices tried with binom.test; _first, _stays: people for `power`, of 120 sizes
+#   part                 n participants of whom only `df` of `cells` are in the cell and choose once (the whole number of
+#                        people nearest to that, of two the smaller), x the true share: every count tried with binom.test;
+#                        _first, _stays: participants for `power`, of n sizes
 #   paired_size, two_size   people for `power`, x is d: power.t.test(strict = TRUE) for each size in turn, and pt with a
 #                        noncentrality for halves of odd numbers
 set.seed(20261126)
@@ -125,5 +128,14 @@ for (kind in c("none", "none_margin")) {
   reached <- of >= 0.8
   add(paste0(kind, "_first"), 120, 1, 0, share, 0, margin, 0.05, 0.8, which(reached)[1])
   add(paste0(kind, "_stays"), 120, 1, 0, share, 0, margin, 0.05, 0.8, max(which(!reached)) + 1)
+}
+by_people <- sapply(1:120, difference, 0.75, 0.05)
+for (part in list(c(9, 22), c(19, 22), c(9, 21))) {
+  there <- function(n) (0:n)[which.min(abs(0:n - n * part[1] / part[2]))]
+  sizes <- floor(110 * part[2] / part[1])
+  of <- sapply(1:sizes, function(n) if (there(n) == 0) 0 else by_people[there(n)])
+  for (n in c(1, 2, 11, 22, 23, 44, 100)) add("part", n, part[2], part[1], 0.75, 0, 0, 0.05, NA, of[n])
+  add("part_first", sizes, part[2], part[1], 0.75, 0, 0, 0.05, 0.8, which(of >= 0.8)[1])
+  add("part_stays", sizes, part[2], part[1], 0.75, 0, 0, 0.05, 0.8, max(which(of < 0.8)) + 1)
 }
 writeLines(c("what,n,cells,df,x,sd,margin,alpha,power,value,error", unlist(rows)), "power_plan.csv")
