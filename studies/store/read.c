@@ -204,18 +204,53 @@ struct store_reader *store_reader_open(const char *path, char *error, size_t err
     return NULL;
 }
 
-bool store_reader_rises(struct store_reader *reader, int64_t id, int64_t *last)
+bool store_reader_log_row(struct store_reader *reader, sqlite3_stmt *row,
+                          const struct store_log_columns *columns, struct store_log_progress *at)
 {
-    if (id <= *last)
+    // 0 is NULL: no row has it.
+    static const char sql[] = "SELECT (?1 = 0 OR EXISTS (SELECT 1 FROM session WHERE id = ?1)) AND"
+                              " (?2 = 0 OR EXISTS (SELECT 1 FROM segment WHERE id = ?2)) AND"
+                              " (?3 = 0 OR EXISTS (SELECT 1 FROM trial WHERE id = ?3)) AND"
+                              " (?4 = 0 OR EXISTS (SELECT 1 FROM condition WHERE id = ?4))";
+    const int of[4] = {columns->session, columns->segment, columns->trial, columns->condition};
+    const int64_t id = sqlite3_column_int64(row, columns->id);
+    bool new_references = false;
+    if (id <= at->id && at->id) {
         store_reader_fail_sqlite(reader, SQLITE_CORRUPT);
-    bool rises = id > *last;
-    *last = id;
-    return rises;
+        return false;
+    }
+    at->id = id;
+    for (int i = 0; i < 4; i++) {
+        int64_t refers = of[i] < 0 ? 0 : sqlite3_column_int64(row, of[i]);
+        new_references = new_references || refers != at->refers[i];
+        at->refers[i] = refers;
+    }
+    if (!new_references)
+        return true;
+    int code = reader->refers ? SQLITE_OK : sqlite3_prepare_v2(reader->db, sql, -1, &reader->refers, NULL);
+    for (int i = 0; i < 4 && code == SQLITE_OK; i++)
+        code = sqlite3_bind_int64(reader->refers, i + 1, at->refers[i]);
+    if (code == SQLITE_OK)
+        code = sqlite3_step(reader->refers);
+    bool all = code == SQLITE_ROW && sqlite3_column_int(reader->refers, 0);
+    if (code != SQLITE_ROW)
+        store_reader_fail_sqlite(reader, code);
+    else if (!all)
+        store_reader_fail(
+            reader,
+            "%s: the study file is damaged (table %s refers to rows that are not there); use a backup, or "
+            "try sqlite3's .recover on a copy",
+            reader->path, columns->condition < 0 ? "gaze" : "frame");
+    sqlite3_reset(reader->refers);
+    return all;
 }
 
-// `sql` counts the faults of the table ?1.
-static bool faultless(struct store_reader *reader, const char *sql, const char *table)
+// SQLite finds a row by its index without comparing the two.
+static bool whole(struct store_reader *reader, const char *table)
 {
+    static const char sql[] =
+        "SELECT (SELECT count(*) FROM pragma_integrity_check(?1, 'main') WHERE integrity_check <> 'ok') + "
+        "(SELECT count(*) FROM pragma_foreign_key_check(?1, 'main'))";
     sqlite3_stmt *statement = NULL;
     int64_t faults = 0;
     int code = sqlite3_prepare_v2(reader->db, sql, -1, &statement, NULL);
@@ -236,23 +271,6 @@ static bool faultless(struct store_reader *reader, const char *sql, const char *
     return code == SQLITE_ROW && faults == 0;
 }
 
-// SQLite finds a row by its index without comparing the two.
-static bool whole(struct store_reader *reader, const char *table)
-{
-    static const char sql[] =
-        "SELECT (SELECT count(*) FROM pragma_integrity_check(?1, 'main') WHERE integrity_check <> 'ok') + "
-        "(SELECT count(*) FROM pragma_foreign_key_check(?1, 'main'))";
-    return faultless(reader, sql, table);
-}
-
-bool store_reader_refers(struct store_reader *reader, const char *table, bool *known)
-{
-    static const char sql[] = "SELECT EXISTS (SELECT 1 FROM pragma_foreign_key_check(?1, 'main'))";
-    reader->error[0] = '\0';
-    *known = *known || faultless(reader, sql, table);
-    return *known;
-}
-
 bool store_reader_whole(struct store_reader *reader, bool logs)
 {
     static const char *const tables[] = {
@@ -270,6 +288,7 @@ void store_reader_close(struct store_reader *reader)
     if (!reader)
         return;
     sqlite3_finalize(reader->after);
+    sqlite3_finalize(reader->refers);
     sqlite3_close(reader->db);
     free(reader->path);
     free(reader);

@@ -13,7 +13,7 @@ struct call {
     store_moment_fn moment;
     store_audit_frame_fn frame;
     store_exposure_fn exposure;
-    int id; // the column of the id that rows are in the order of; 0: none
+    const struct store_log_columns *log; // of gaze and frames
 };
 
 static bool read_all(struct store_reader *reader, const char *sql,
@@ -23,10 +23,9 @@ static bool read_all(struct store_reader *reader, const char *sql,
     reader->error[0] = '\0';
     int code = sqlite3_prepare_v2(reader->db, sql, -1, &statement, NULL);
     bool going = code == SQLITE_OK;
-    int64_t last = INT64_MIN;
+    struct store_log_progress at = {0};
     while (going && (code = sqlite3_step(statement)) == SQLITE_ROW)
-        going = (!call->id || store_reader_rises(reader, sqlite3_column_int64(statement, call->id), &last)) &&
-                row(statement, call);
+        going = (!call->log || store_reader_log_row(reader, statement, call->log, &at)) && row(statement, call);
     if (code != SQLITE_DONE && code != SQLITE_ROW) {
         store_reader_fail_sqlite(reader, code);
         going = false;
@@ -164,8 +163,8 @@ bool store_read_audit_frames(struct store_reader *reader, store_audit_frame_fn e
         " f.gaze_id, f.gaze_age_us, f.fovea,"
         " " NOT_AS_ASKED(
             "f.") ", f.id FROM frame f LEFT JOIN condition c ON c.id = f.condition_id ORDER BY f.id";
-    return store_reader_refers(reader, "frame", &reader->frames_refer) &&
-           read_all(reader, sql, frame_row, &(struct call){.user = user, .frame = each, .id = 17});
+    static const struct store_log_columns log = {17, 0, 1, 2, 9};
+    return read_all(reader, sql, frame_row, &(struct call){.user = user, .frame = each, .log = &log});
 }
 
 bool store_read_gaze_after(struct store_reader *reader, int64_t gaze_id, int64_t segment_id,

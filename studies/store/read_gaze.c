@@ -12,7 +12,7 @@ struct call {
     store_target_fn target;
     store_gaze_use_fn use;
     store_gaze_check_fn check;
-    int id; // the column of the id that rows are in the order of; 0: none
+    const struct store_log_columns *log; // of gaze and frames
 };
 
 static bool read_all(struct store_reader *reader, const char *sql, int64_t bound,
@@ -24,10 +24,9 @@ static bool read_all(struct store_reader *reader, const char *sql, int64_t bound
     bool going = code == SQLITE_OK;
     if (going && bound)
         sqlite3_bind_int64(statement, 1, bound);
-    int64_t last = INT64_MIN;
+    struct store_log_progress at = {0};
     while (going && (code = sqlite3_step(statement)) == SQLITE_ROW)
-        going = (!call->id || store_reader_rises(reader, sqlite3_column_int64(statement, call->id), &last)) &&
-                row(statement, call);
+        going = (!call->log || store_reader_log_row(reader, statement, call->log, &at)) && row(statement, call);
     if (code != SQLITE_DONE && code != SQLITE_ROW) {
         store_reader_fail_sqlite(reader, code);
         going = false;
@@ -74,8 +73,8 @@ bool store_read_gaze(struct store_reader *reader, store_gaze_sample_fn each, voi
 {
     static const char sql[] = "SELECT session_id, segment_id, trial_id, device_ns, host_ns, eye, x_deg, y_deg,"
                               " valid, id FROM gaze ORDER BY id";
-    return store_reader_refers(reader, "gaze", &reader->gaze_refers) &&
-           read_all(reader, sql, 0, sample_row, &(struct call){.user = user, .sample = each, .id = 9}) &&
+    static const struct store_log_columns log = {9, 0, 1, 2, -1};
+    return read_all(reader, sql, 0, sample_row, &(struct call){.user = user, .sample = each, .log = &log}) &&
            store_reader_unchanged(reader);
 }
 
@@ -142,9 +141,10 @@ bool store_read_gaze_uses(struct store_reader *reader, store_gaze_use_fn each, v
 {
     static const char sql[] =
         "SELECT session_id, gaze_age_us, present_ns - start_ns, present_estimated, fovea_source = 'lost',"
-        " phase = 'stimulus' AND fovea_source IN ('gaze', 'lost'), id FROM frame ORDER BY id";
-    return store_reader_refers(reader, "frame", &reader->frames_refer) &&
-           read_all(reader, sql, 0, use_row, &(struct call){.user = user, .use = each, .id = 6}) &&
+        " phase = 'stimulus' AND fovea_source IN ('gaze', 'lost'), id, segment_id, trial_id, condition_id FROM "
+        "frame ORDER BY id";
+    static const struct store_log_columns log = {6, 0, 7, 8, 9};
+    return read_all(reader, sql, 0, use_row, &(struct call){.user = user, .use = each, .log = &log}) &&
            store_reader_unchanged(reader);
 }
 

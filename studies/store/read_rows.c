@@ -18,7 +18,7 @@ struct call {
     store_exclusion_fn exclusion;
     store_step_fn step;
     store_adjusted_fn adjusted;
-    int id; // the column of the id that rows are in the order of; 0: none
+    const struct store_log_columns *log; // of gaze and frames
 };
 
 typedef bool (*row_fn)(sqlite3_stmt *statement, const struct call *call);
@@ -33,10 +33,9 @@ static bool read_rows(struct store_reader *reader, const char *sql, row_fn row, 
         return false;
     }
     bool going = true;
-    int64_t last = INT64_MIN;
+    struct store_log_progress at = {0};
     while (going && (code = sqlite3_step(statement)) == SQLITE_ROW)
-        going = (!call->id || store_reader_rises(reader, sqlite3_column_int64(statement, call->id), &last)) &&
-                row(statement, call);
+        going = (!call->log || store_reader_log_row(reader, statement, call->log, &at)) && row(statement, call);
     if (going && code != SQLITE_DONE) {
         store_reader_fail_sqlite(reader, code);
         going = false;
@@ -268,8 +267,8 @@ bool store_read_frames(struct store_reader *reader, store_frame_fn each, void *u
         "f.phase, f.start_ns, f.cpu_us,"
         " f.gpu_us, f.late, f.gaze_age_us, f.shaded_px, g.clock = 'simulated', f.attempt, f.id"
         " FROM frame f LEFT JOIN segment g ON g.id = f.segment_id ORDER BY f.id";
-    return store_reader_refers(reader, "frame", &reader->frames_refer) &&
-           read_rows(reader, sql, frame_row, &(struct call){.user = user, .frame = each, .id = 14});
+    static const struct store_log_columns log = {14, 0, 1, 2, 4};
+    return read_rows(reader, sql, frame_row, &(struct call){.user = user, .frame = each, .log = &log});
 }
 
 static bool exclusion_row(sqlite3_stmt *s, const struct call *call)
