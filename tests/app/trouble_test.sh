@@ -78,7 +78,11 @@ goes_on
 stop 1
 
 # Only the events find no room, in a file larger than the study: the answer is stored, and told when it can be.
-truncate -s 20M room.jsonl # zeros, which get a line's end
+{
+    printf '{"seq":1,"pad":"'
+    head -c 20000000 /dev/zero | tr '\0' x
+    printf '"}\n{"seq":2,"event":"gap"}\n'
+} >room.jsonl # an earlier session's
 start room
 prlimit --pid $program --fsize=$(($(stat -c %s room.jsonl) + 2000)):unlimited
 says 'events file cannot be written'
