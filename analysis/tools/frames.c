@@ -10,7 +10,7 @@
 #include <string.h>
 
 static const char help[] =
-    "usage: fovstats frames DB... [--audit] [--simulated] [--json]\n"
+    "usage: fovstats frames DB... [--audit] [--simulated] [--conf C] [--json]\n"
     "\n"
     "Frame times in milliseconds per option and phase: GPU, CPU and interval between frames (median, 95th\n"
     "and 99th percentile, type 7), late frames, and pixels shaded. Gray frames and text are not rendered.\n"
@@ -20,6 +20,7 @@ static const char help[] =
     "               the one asked for, and the fade of every switch against the protocol; names the trials\n"
     "  --simulated  analyse simulated sessions, which are left out otherwise\n"
     "  --protocol N analyse the sessions of this protocol; else of the one with most sessions\n"
+    "  --conf C     confidence of the interval over people (0.95)\n"
     "  --json       one object with the groups in an array\n";
 
 static void times_cells(struct table *t, const struct frame_times *times)
