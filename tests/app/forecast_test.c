@@ -1,5 +1,5 @@
 // The tests whose power `fovstudy check` forecasts are those that `fovstats planned` then makes: as many rows,
-// with as many people, and a test where the forecast has one.
+// a test where the forecast has one, and with as many people.
 #include "tests/app/command.h"
 
 #include <setjmp.h>
@@ -83,7 +83,7 @@ static const char both_rated[] = HEAD "analysis:\n" COMPARED("rating")
                                       " settings: {ratings: quality}\n"
                                       "  factors: {epsilon: [0.1, 0.2]}\n";
 
-// People of each row, and whether it is a test; a plan without one has a row that says why.
+// Whether each row is a test, and of how many people; a plan without one has a row that says why.
 static const char compare[] =
     "import json, sys\n"
     "check, planned = (json.load(open(name)) for name in sys.argv[1:])\n"
@@ -95,13 +95,13 @@ static const char compare[] =
     "    for p in a['parts']:\n"
     "        n = p['n'] + p.get('n_second', 0) - p.get('both', 0)\n"
     "        tested = n > 0 and not p.get('both', 0)\n"
-    "        rows += [(n, tested)] * (2 if p['margin_planned'] else 1)\n"
+    "        rows += [(n * tested, tested)] * (2 if p['margin_planned'] else 1)\n"
     "    if a['none']:\n"
     "        assert not rows, key\n"
     "        rows = [(0, False)]\n"
-    "    made = [(r['people'], r['test'] != '' or 'no spread' in r['note'] or 'not estimable: one' in "
-    "r['note'])\n"
+    "    made = [r['test'] != '' or 'no spread' in r['note'] or 'not estimable: one' in r['note']\n"
     "            for r in plans[key]]\n"
+    "    made = [(r['people'] * tested, tested) for r, tested in zip(plans[key], made)]\n"
     "    if sorted(rows) != sorted(made):\n"
     "        sys.exit(f'{key}: forecast {sorted(rows)}, made {sorted(made)}, {[r[\"row\"] + r[\"note\"] for r "
     "in "
