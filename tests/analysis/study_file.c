@@ -46,6 +46,20 @@ void study_file_sql(const char *path, const char *sql)
     sqlite3_close(db);
 }
 
+const char *study_file_ask(const char *path, const char *sql)
+{
+    static char answer[256];
+    sqlite3 *db = NULL;
+    sqlite3_stmt *statement = NULL;
+    assert_int_equal(sqlite3_open_v2(path, &db, SQLITE_OPEN_READONLY, NULL), SQLITE_OK);
+    if (sqlite3_prepare_v2(db, sql, -1, &statement, NULL) != SQLITE_OK || sqlite3_step(statement) != SQLITE_ROW)
+        fail_msg("%s: %s", sqlite3_errmsg(db), sql);
+    snprintf(answer, sizeof answer, "%s", (const char *)sqlite3_column_text(statement, 0));
+    sqlite3_finalize(statement);
+    sqlite3_close(db);
+    return answer;
+}
+
 void study_file_even(const char *path)
 {
     study_file_sql(path,

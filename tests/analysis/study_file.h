@@ -24,6 +24,8 @@ struct study_desc {
 void study_file_make(const char *path,
                      const struct study_desc *desc); // replaces; fails the test on an SQL error
 void study_file_sql(const char *path, const char *sql);
+// One value of one query, as text; good until the next call. Fails the test where there is none.
+const char *study_file_ask(const char *path, const char *sql);
 void study_file_even(const char *path); // from now on 11 of 22 and 9 of 19 chose the test option
 
 #endif

@@ -21,21 +21,6 @@ static const char fovstats[] = BUILD_DIR "/bin/fovstats";
 #define RUN(...) program_run((const char *const[]){__VA_ARGS__, NULL}, NULL)
 #define MERGE(...) RUN(fovstats, "merge", __VA_ARGS__)
 
-// One value of one query, as text.
-static const char *ask(const char *path, const char *sql)
-{
-    static char answer[256];
-    sqlite3 *db = NULL;
-    sqlite3_stmt *statement = NULL;
-    assert_int_equal(sqlite3_open_v2(path, &db, SQLITE_OPEN_READONLY, NULL), SQLITE_OK);
-    if (sqlite3_prepare_v2(db, sql, -1, &statement, NULL) != SQLITE_OK || sqlite3_step(statement) != SQLITE_ROW)
-        fail_msg("%s: %s", sqlite3_errmsg(db), sql);
-    snprintf(answer, sizeof answer, "%s", (const char *)sqlite3_column_text(statement, 0));
-    sqlite3_finalize(statement);
-    sqlite3_close(db);
-    return answer;
-}
-
 static void copy(const char *from, const char *to)
 {
     struct program_result r = RUN("/bin/cp", from, to);
@@ -90,16 +75,18 @@ static void laboratories_are_joined(void **state)
     said_done(MERGE("a.db", "--lab", "Ulm=b.db", "-o", "m.db"), "44 participants, 44 sessions; 0 were");
     expect_same("a.db", "a0.db");
     expect_same("b.db", "b0.db");
-    assert_string_equal(ask("m.db", "SELECT integrity_check FROM pragma_integrity_check"), "ok");
-    assert_string_equal(ask("m.db", "SELECT count(*) FROM pragma_foreign_key_check"), "0");
-    assert_string_equal(ask("m.db", "SELECT code FROM participant WHERE code LIKE 'U%' ORDER BY id"),
+    assert_string_equal(study_file_ask("m.db", "SELECT integrity_check FROM pragma_integrity_check"), "ok");
+    assert_string_equal(study_file_ask("m.db", "SELECT count(*) FROM pragma_foreign_key_check"), "0");
+    assert_string_equal(study_file_ask("m.db", "SELECT code FROM participant WHERE code LIKE 'U%' ORDER BY id"),
                         "Ulm-P01");
-    assert_string_equal(ask("m.db", "SELECT group_concat(number) FROM participant WHERE code LIKE '%P07'"),
-                        "7,7");
     assert_string_equal(
-        ask("m.db", "SELECT count(DISTINCT detail ->> '$.sha256') FROM event WHERE kind = 'merged'"), "2");
-    assert_string_equal(ask("m.db", "SELECT count(*) FROM sqlite_schema WHERE type = 'trigger'"), "2");
-    assert_string_equal(ask("m.db", "SELECT count(*) FROM exclusion"), "2");
+        study_file_ask("m.db", "SELECT group_concat(number) FROM participant WHERE code LIKE '%P07'"), "7,7");
+    assert_string_equal(
+        study_file_ask("m.db", "SELECT count(DISTINCT detail ->> '$.sha256') FROM event WHERE kind = 'merged'"),
+        "2");
+    assert_string_equal(study_file_ask("m.db", "SELECT count(*) FROM sqlite_schema WHERE type = 'trigger'"),
+                        "2");
+    assert_string_equal(study_file_ask("m.db", "SELECT count(*) FROM exclusion"), "2");
     char *together = choices("a.db", "b.db"), *merged = choices("m.db", NULL);
     said_same(merged, together);
     free(together);
@@ -146,8 +133,8 @@ static void the_later_copy_holds(void **state)
     for (int i = 0; i < 2; i++) {
         unlink("m.db");
         said_done(MERGE(orders[i][0], orders[i][1], "-o", "m.db"), "22 participants, 22 sessions; 22 were");
-        assert_string_equal(ask("m.db", "SELECT count(*) || ' ' || sum(status = 'running') FROM session"),
-                            "22 0");
+        assert_string_equal(
+            study_file_ask("m.db", "SELECT count(*) || ' ' || sum(status = 'running') FROM session"), "22 0");
         char *later = choices("later.db", NULL), *merged = choices("m.db", NULL);
         said_same(merged, later);
         free(later);
@@ -156,7 +143,7 @@ static void the_later_copy_holds(void **state)
     // A file that lacks people, and one that has more: an unfinished session stays as it is.
     unlink("m.db");
     said_done(MERGE("a.db", "-o", "m.db"), "22 sessions; 0 were");
-    assert_string_equal(ask("m.db", "SELECT status FROM session WHERE id = 5"), "running");
+    assert_string_equal(study_file_ask("m.db", "SELECT status FROM session WHERE id = 5"), "running");
     unlink("m.db");
     study_file_sql("later.db", "UPDATE choice SET chosen = iif(chosen = 'a', 'b', 'a') WHERE trial_id = 51");
     expect_fails(MERGE("a.db", "later.db", "-o", "m.db"), 1, "went on differently (table choice)", "m.db");

@@ -31,20 +31,6 @@ static void make_copies(const char *change)
     study_file_sql("c.db", change);
 }
 
-static const char *ask(const char *path, const char *sql)
-{
-    static char answer[256];
-    sqlite3 *db = NULL;
-    sqlite3_stmt *statement = NULL;
-    assert_int_equal(sqlite3_open_v2(path, &db, SQLITE_OPEN_READONLY, NULL), SQLITE_OK);
-    if (sqlite3_prepare_v2(db, sql, -1, &statement, NULL) != SQLITE_OK || sqlite3_step(statement) != SQLITE_ROW)
-        fail_msg("%s: %s", sqlite3_errmsg(db), sql);
-    snprintf(answer, sizeof answer, "%s", (const char *)sqlite3_column_text(statement, 0));
-    sqlite3_finalize(statement);
-    sqlite3_close(db);
-    return answer;
-}
-
 static struct program_result merge(int order)
 {
     unlink("m.db");
@@ -73,8 +59,8 @@ static void expect_merged(const char *change, const char *sql, const char *answe
             fail_msg("after %s, order %d: exit %d, no \"%s\" in %s%s", change, i, r.code, said[i], r.out,
                      r.err);
         program_free(&r);
-        assert_string_equal(ask("m.db", sql), answer);
-        assert_string_equal(ask("m.db", "SELECT count(*) FROM session"), "22");
+        assert_string_equal(study_file_ask("m.db", sql), answer);
+        assert_string_equal(study_file_ask("m.db", "SELECT count(*) FROM session"), "22");
     }
 }
 
